@@ -1,0 +1,233 @@
+//! The parameters that are turned.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    laplacian::{Mass, Operator},
+    metrics::Distance,
+    selection::{Cost, SelCount},
+    spectrum::Normalisation,
+};
+
+/// Greatest kmax and k that can be asked for.
+const KMAX_MAX: usize = 5000;
+/// Greatest number of rounds.
+const ROUNDS_MAX: usize = 1000;
+
+/// One value for each parameter.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Which eigenproblem.
+    pub operator: Operator,
+    /// Which mass matrix.
+    pub mass: Mass,
+    /// How many eigenvalues of each model are used.
+    pub kmax: usize,
+    /// What is made of them.
+    pub normalisation: Normalisation,
+    /// How features are compared.
+    pub distance: Distance,
+    /// The k at which the first-k figures are read off.
+    pub k: usize,
+    /// AdaBoost's rounds T.
+    pub rounds: usize,
+    /// Which of the two hill climbings is shown in detail.
+    pub cost: Cost,
+    /// Which number of selected eigenvalues Table 3 shows.
+    pub sel: SelCount,
+    /// The class whose selection is shown in detail, an index.
+    pub class: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            operator: Operator::Fem,
+            mass: Mass::Consistent,
+            kmax: 500,
+            normalisation: Normalisation::Max,
+            distance: Distance::L2,
+            k: 10,
+            rounds: 20,
+            cost: Cost::Error,
+            sel: SelCount::Chosen,
+            class: 0,
+        }
+    }
+}
+
+/// Names a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Parameter {
+    /// [`Settings::operator`].
+    Operator,
+    /// [`Settings::mass`].
+    Mass,
+    /// [`Settings::kmax`].
+    Kmax,
+    /// [`Settings::normalisation`].
+    Normalisation,
+    /// [`Settings::distance`].
+    Distance,
+    /// [`Settings::k`].
+    K,
+    /// [`Settings::rounds`].
+    Rounds,
+    /// [`Settings::cost`].
+    Cost,
+    /// [`Settings::sel`].
+    Sel,
+    /// [`Settings::class`].
+    Class,
+}
+
+impl Parameter {
+    /// All of them, in the order in which they are shown.
+    pub const ALL: [Self; 10] = [
+        Self::Operator,
+        Self::Mass,
+        Self::Kmax,
+        Self::Normalisation,
+        Self::Distance,
+        Self::K,
+        Self::Rounds,
+        Self::Cost,
+        Self::Sel,
+        Self::Class,
+    ];
+
+    /// Its name on the command line and in reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Operator => "operator",
+            Self::Mass => "mass",
+            Self::Kmax => "kmax",
+            Self::Normalisation => "normalisation",
+            Self::Distance => "distance",
+            Self::K => "k",
+            Self::Rounds => "T",
+            Self::Cost => "cost",
+            Self::Sel => "sel",
+            Self::Class => "class",
+        }
+    }
+
+    /// What it does, in one line.
+    #[must_use]
+    pub const fn about(self) -> &'static str {
+        match self {
+            Self::Operator => "eigenproblem: fem (L f = λ B f) or cot (L f = λ f)",
+            Self::Mass => "mass matrix of fem: consistent or lumped",
+            Self::Kmax => "eigenvalues of each model that are used",
+            Self::Normalisation => "what is made of λ: none, area (λ·area), max (λ/λ_kmax), weyl, log",
+            Self::Distance => "how features are compared: l2, l1, chi2",
+            Self::K => "the k at which the first-k figures are read off",
+            Self::Rounds => "rounds of AdaBoost",
+            Self::Cost => "what the hill climbing shown minimises: error or adr",
+            Self::Sel => "eigenvalues AdaBoost is said to select: chosen, or all ties",
+            Self::Class => "the class shown in detail",
+        }
+    }
+
+    /// The words it takes, or none for a number.
+    #[must_use]
+    pub const fn choices(self) -> &'static [&'static str] {
+        match self {
+            Self::Operator => &["fem", "cot"],
+            Self::Mass => &["consistent", "lumped"],
+            Self::Normalisation => &["none", "area", "max", "weyl", "log"],
+            Self::Distance => &["l2", "l1", "chi2"],
+            Self::Cost => &["error", "adr"],
+            Self::Sel => &["chosen", "ties"],
+            Self::Kmax | Self::K | Self::Rounds | Self::Class => &[],
+        }
+    }
+
+    /// The least and the greatest number it takes; `classes` is how many classes there are. `(0, 0)` for words.
+    #[must_use]
+    pub const fn range(self, classes: usize) -> (usize, usize) {
+        match self {
+            Self::Kmax | Self::K => (1, KMAX_MAX),
+            Self::Rounds => (1, ROUNDS_MAX),
+            Self::Class => (1, if classes == 0 { 1 } else { classes }),
+            _ => (0, 0),
+        }
+    }
+
+    /// The parameter of that name (any case).
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|parameter| parameter.name().eq_ignore_ascii_case(name))
+    }
+}
+
+impl Settings {
+    /// The value of a parameter as text: what [`Settings::set`] takes. Classes count from 1.
+    #[must_use]
+    pub fn get(&self, parameter: Parameter) -> String {
+        let word = |index: usize| parameter.choices()[index].to_owned();
+        match parameter {
+            Parameter::Operator => word(self.operator as usize),
+            Parameter::Mass => word(self.mass as usize),
+            Parameter::Normalisation => word(self.normalisation as usize),
+            Parameter::Distance => word(self.distance as usize),
+            Parameter::Cost => word(self.cost as usize),
+            Parameter::Sel => word(self.sel as usize),
+            Parameter::Kmax => self.kmax.to_string(),
+            Parameter::K => self.k.to_string(),
+            Parameter::Rounds => self.rounds.to_string(),
+            Parameter::Class => (self.class + 1).to_string(),
+        }
+    }
+
+    /// Sets a parameter from text.
+    ///
+    /// # Errors
+    /// A line that says which words or numbers the parameter takes.
+    pub fn set(&mut self, parameter: Parameter, value: &str, classes: usize) -> Result<(), String> {
+        let choices = parameter.choices();
+        if choices.is_empty() {
+            let (least, greatest) = parameter.range(classes);
+            let number =
+                value.trim().parse::<usize>().ok().filter(|number| (least..=greatest).contains(number)).ok_or_else(
+                    || format!("{} takes a number from {least} to {greatest}, not {value:?}", parameter.name()),
+                )?;
+            match parameter {
+                Parameter::Kmax => self.kmax = number,
+                Parameter::K => self.k = number,
+                Parameter::Rounds => self.rounds = number,
+                _ => self.class = number - 1,
+            }
+            return Ok(());
+        }
+        let index = choices
+            .iter()
+            .position(|choice| choice.eq_ignore_ascii_case(value.trim()))
+            .ok_or_else(|| format!("{} takes {}, not {value:?}", parameter.name(), choices.join(", ")))?;
+        match parameter {
+            Parameter::Operator => self.operator = [Operator::Fem, Operator::Cot][index],
+            Parameter::Mass => self.mass = [Mass::Consistent, Mass::Lumped][index],
+            Parameter::Normalisation => self.normalisation = Normalisation::ALL[index],
+            Parameter::Distance => self.distance = Distance::ALL[index],
+            Parameter::Cost => self.cost = [Cost::Error, Cost::Adr][index],
+            _ => self.sel = [SelCount::Chosen, SelCount::Ties][index],
+        }
+        Ok(())
+    }
+
+    /// Moves a parameter by `steps`: words go round, numbers stop at their ends. Says whether it changed.
+    pub fn step(&mut self, parameter: Parameter, steps: isize, classes: usize) -> bool {
+        let before = self.clone();
+        let choices = parameter.choices();
+        let next = if choices.is_empty() {
+            let (least, greatest) = parameter.range(classes);
+            let number = self.get(parameter).parse::<usize>().unwrap_or(least);
+            number.saturating_add_signed(steps).clamp(least, greatest).to_string()
+        } else {
+            let at = choices.iter().position(|choice| *choice == self.get(parameter)).unwrap_or(0);
+            choices[(at as isize + steps).rem_euclid(choices.len() as isize) as usize].to_owned()
+        };
+        self.set(parameter, &next, classes).is_ok() && *self != before
+    }
+}
