@@ -1,0 +1,113 @@
+//! Everything that can happen to the state, and everything the state can ask for.
+
+use std::sync::Arc;
+
+use super::{Command, View};
+use crate::query::{Answer, Parameter};
+
+/// Something that happened: a key's meaning, or news.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// Leave, as asked.
+    Quit,
+    /// Leave, as interrupted.
+    Interrupt,
+    /// Hand the terminal back to the shell for a while.
+    Suspend,
+    /// Draw everything anew.
+    Redraw,
+    /// Show or hide the help.
+    Help,
+    /// Close what is open above the view.
+    Close,
+    /// Show a view.
+    Show(View),
+    /// Show the next view.
+    NextView,
+    /// Show the view before.
+    PreviousView,
+    /// Choose a parameter.
+    Choose(Parameter),
+    /// Turn the chosen parameter by so many steps.
+    Turn(isize),
+    /// Turn it by so many big steps.
+    Leap(isize),
+    /// Begin to type a value.
+    Edit,
+    /// Give the chosen parameter its first value back.
+    Reset,
+    /// Give every parameter its first value back.
+    ResetAll,
+    /// Take back the last change of parameters.
+    Undo,
+    /// Take back the last undo.
+    Redo,
+    /// Look at the files again.
+    Rescan,
+    /// Stop or resume solving.
+    ToggleSolving,
+    /// One line up: the parameter before, the model before, the help's line before.
+    Up,
+    /// One line down.
+    Down,
+    /// A page up.
+    PageUp,
+    /// A page down.
+    PageDown,
+    /// To the first line.
+    First,
+    /// To the last line.
+    Last,
+    /// Switch the k axis between logarithmic and linear.
+    ToggleAxis,
+    /// Switch between Figure 5 and Figure 4.
+    ToggleFigure,
+    /// Compare the class shown with others, or no longer.
+    Compare,
+    /// Compare no classes.
+    CompareNone,
+    /// List all models, those with a defect, or those that take no part.
+    CycleFilter,
+    /// A character typed into the entry.
+    Insert(char),
+    /// Delete the character before the entry's caret.
+    Erase,
+    /// Delete everything before the entry's caret.
+    EraseAll,
+    /// Move the entry's caret left.
+    Left,
+    /// Move the entry's caret right.
+    Right,
+    /// Take the entry's value.
+    Commit,
+    /// The screen has this size now, columns and rows.
+    Resize(u16, u16),
+    /// An answer of the engine.
+    Answer(Arc<Answer>),
+    /// The engine cannot go on.
+    Fatal(String),
+    /// Something the user should know, in one line.
+    Report(String),
+}
+
+/// What the state asks of the world outside.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Effect {
+    /// Send this to the engine.
+    Send(Command),
+    /// End the session.
+    Leave(Leave),
+    /// Hand the terminal back to the shell until the shell continues us.
+    Suspend,
+    /// Draw everything anew, whatever the terminal shows.
+    Redraw,
+}
+
+/// How a session ends at the user's wish.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leave {
+    /// Done.
+    Quit,
+    /// Interrupted.
+    Interrupt,
+}

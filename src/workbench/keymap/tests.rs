@@ -1,0 +1,142 @@
+use std::{collections::HashSet, mem};
+
+use super::*;
+use crate::{
+    query::Settings,
+    workbench::{Entry, update},
+};
+
+fn state(view: View) -> State {
+    State { view, ..State::new("data", Settings::default()) }
+}
+
+/// States in which between them every context holds.
+fn moods() -> Vec<State> {
+    let mut moods: Vec<State> = View::ALL.into_iter().map(state).collect();
+    moods.push(State { help: Some(0), ..state(View::Overview) });
+    moods.push(State { entry: Some(Entry::default()), ..state(View::Overview) });
+    moods
+}
+
+#[test]
+fn no_key_means_two_things_in_one_place() {
+    for state in moods() {
+        let contexts = contexts(&state);
+        let mut seen = HashSet::new();
+        for binding in bindings().iter().filter(|binding| contexts.contains(&binding.context)) {
+            for (key, _) in &binding.keys {
+                assert!(seen.insert(*key), "{} has two meanings in {contexts:?}", key.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_binding_is_reached_by_its_keys() {
+    let mut reached = HashSet::new();
+    for state in moods() {
+        let contexts = contexts(&state);
+        for (row, binding) in bindings().iter().enumerate().filter(|(_, b)| contexts.contains(&b.context)) {
+            for (key, bound) in &binding.keys {
+                assert_eq!(action(&state, *key).as_ref(), Some(bound), "{}", key.name());
+                reached.insert(row);
+            }
+        }
+    }
+    assert_eq!(reached.len(), bindings().len());
+}
+
+#[test]
+fn every_action_of_a_key_is_bound() {
+    let bound: HashSet<_> = bindings().iter().flat_map(|b| &b.keys).map(|(_, a)| mem::discriminant(a)).collect();
+    let by_key = [
+        Action::Quit,
+        Action::Interrupt,
+        Action::Suspend,
+        Action::Redraw,
+        Action::Help,
+        Action::Close,
+        Action::Show(View::Curves),
+        Action::NextView,
+        Action::PreviousView,
+        Action::Choose(Parameter::K),
+        Action::Turn(1),
+        Action::Leap(1),
+        Action::Edit,
+        Action::Reset,
+        Action::ResetAll,
+        Action::Undo,
+        Action::Redo,
+        Action::Rescan,
+        Action::ToggleSolving,
+        Action::Up,
+        Action::Down,
+        Action::PageUp,
+        Action::PageDown,
+        Action::First,
+        Action::Last,
+        Action::ToggleAxis,
+        Action::ToggleFigure,
+        Action::Compare,
+        Action::CompareNone,
+        Action::CycleFilter,
+        Action::Erase,
+        Action::EraseAll,
+        Action::Left,
+        Action::Right,
+        Action::Commit,
+    ];
+    for action in &by_key {
+        assert!(bound.contains(&mem::discriminant(action)), "{action:?} has no key");
+    }
+    assert_eq!(bound.len(), by_key.len(), "a bound action is missing from this test");
+    for view in View::ALL {
+        assert!(bindings().iter().flat_map(|b| &b.keys).any(|(_, a)| *a == Action::Show(view)), "{view:?}");
+    }
+    for parameter in Parameter::ALL {
+        assert!(bindings().iter().flat_map(|b| &b.keys).any(|(_, a)| *a == Action::Choose(parameter)));
+    }
+}
+
+#[test]
+fn labels_name_the_keys() {
+    for binding in bindings() {
+        let (first, _) = binding.keys.first().unwrap();
+        let last = binding.keys.last().unwrap().0;
+        assert!(binding.label.contains(&first.name().replace("Shift-", "")), "{} {}", binding.label, first.name());
+        assert!(binding.label.contains(&last.name()), "{} {}", binding.label, last.name());
+        assert!(!binding.about.is_empty());
+    }
+}
+
+#[test]
+fn digits_are_views_until_a_value_is_typed() {
+    let mut state = state(View::Overview);
+    assert_eq!(action(&state, Key::Char('2')), Some(Action::Show(View::Curves)));
+    update(&mut state, Action::Edit);
+    assert_eq!(action(&state, Key::Char('2')), Some(Action::Insert('2')));
+    assert_eq!(action(&state, Key::Char('q')), Some(Action::Insert('q')));
+    assert_eq!(action(&state, Key::Ctrl('c')), Some(Action::Interrupt));
+    assert_eq!(action(&state, Key::F(9)), None);
+}
+
+#[test]
+fn q_closes_the_help_before_it_quits() {
+    let mut state = state(View::Tables);
+    update(&mut state, Action::Help);
+    assert_eq!(action(&state, Key::Char('q')), Some(Action::Close));
+    assert_eq!(action(&state, Key::Char('z')), None);
+    update(&mut state, Action::Close);
+    assert_eq!(action(&state, Key::Char('q')), Some(Action::Quit));
+}
+
+#[test]
+fn hints_come_from_the_table() {
+    let line = |state: &State| {
+        hints(state).into_iter().map(|(keys, word)| format!("{keys} {word}")).collect::<Vec<_>>().join(" · ")
+    };
+    let overview = line(&state(View::Overview));
+    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–6 view · ? help · q quit");
+    assert_eq!(line(&moods()[6]), "↑↓ scroll · Esc close");
+    assert_eq!(line(&moods()[7]), "Enter take it · Esc leave it");
+}

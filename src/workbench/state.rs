@@ -1,0 +1,172 @@
+//! What the screen shows, apart from its size and colours.
+
+use std::{collections::BTreeSet, sync::Arc};
+
+use super::{Entry, History, ModelList, parameters};
+use crate::query::{Answer, Parameter, Part, Settings, Stage};
+
+/// A page of the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum View {
+    /// A little of everything.
+    #[default]
+    Overview,
+    /// ε and mean ADR against k.
+    Curves,
+    /// Tables 1 to 4.
+    Tables,
+    /// Which eigenvalues AdaBoost selected.
+    Selection,
+    /// What ran, and what was there already.
+    Pipeline,
+    /// Every model and what is wrong with it.
+    Models,
+}
+
+impl View {
+    /// All of them, in the order of their keys.
+    pub const ALL: [Self; 6] =
+        [Self::Overview, Self::Curves, Self::Tables, Self::Selection, Self::Pipeline, Self::Models];
+
+    /// Its name on the tab.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Overview => "Overview",
+            Self::Curves => "Curves",
+            Self::Tables => "Tables",
+            Self::Selection => "Selection",
+            Self::Pipeline => "Pipeline",
+            Self::Models => "Models",
+        }
+    }
+
+    /// The view so many tabs further, going round.
+    #[must_use]
+    pub fn turned(self, by: isize) -> Self {
+        let count = Self::ALL.len() as isize;
+        Self::ALL[(self as isize + by).rem_euclid(count) as usize]
+    }
+}
+
+/// Which figure of the paper the selection view shows where there is room for one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Figure {
+    /// Figure 5: a column per class, the selected bands along the spectrum.
+    #[default]
+    Map,
+    /// Figure 4: eigenvalue against index, a mark per class.
+    Marks,
+}
+
+/// A line for the user, shown until the next key.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    /// What it says.
+    pub text: String,
+    /// True when something went wrong.
+    pub bad: bool,
+}
+
+/// Everything the screen shows.
+#[derive(Debug, Clone)]
+pub struct State {
+    /// The data set's name, as the user gave it.
+    pub title: String,
+    /// The parameters as they were turned; shown at once, answered later.
+    pub settings: Settings,
+    /// What the parameters go back to.
+    pub first: Settings,
+    /// The newest answer.
+    pub answer: Arc<Answer>,
+    /// The view shown.
+    pub view: View,
+    /// The parameter that the keys turn.
+    pub parameter: Parameter,
+    /// A value being typed for it.
+    pub entry: Option<Entry>,
+    /// The help is open, scrolled down by so many lines.
+    pub help: Option<usize>,
+    /// Undo and redo.
+    pub history: History,
+    /// Classes shown beside the one of the parameter.
+    pub compared: BTreeSet<usize>,
+    /// The k axis is logarithmic.
+    pub logarithmic: bool,
+    /// The figure of the selection view.
+    pub figure: Figure,
+    /// The list of models.
+    pub models: ModelList,
+    /// Lines by which the view is scrolled down; a view stops at its own end.
+    pub scroll: usize,
+    /// Solving was stopped by the user.
+    pub stopped: bool,
+    /// The last thing the user should know.
+    pub notice: Option<Notice>,
+    /// The engine has ended, and why.
+    pub fatal: Option<String>,
+    /// Columns and rows of the screen.
+    pub size: (u16, u16),
+}
+
+impl State {
+    /// The state before the first answer.
+    #[must_use]
+    pub fn new(title: impl Into<String>, settings: Settings) -> Self {
+        Self {
+            title: title.into(),
+            first: settings.clone(),
+            answer: Arc::new(Answer { settings: settings.clone(), ..Answer::default() }),
+            settings,
+            view: View::default(),
+            parameter: Parameter::Rounds,
+            entry: None,
+            help: None,
+            history: History::default(),
+            compared: BTreeSet::new(),
+            logarithmic: true,
+            figure: Figure::default(),
+            models: ModelList::default(),
+            scroll: 0,
+            stopped: false,
+            notice: None,
+            fatal: None,
+            size: (80, 24),
+        }
+    }
+
+    /// True while the value that a stage makes belongs to other parameters than those on the screen.
+    #[must_use]
+    pub fn awaits(&self, stage: Stage) -> bool {
+        let differs = |parameter: &Parameter| self.settings.get(*parameter) != self.answer.settings.get(*parameter);
+        self.settings != self.answer.settings
+            && Parameter::ALL.iter().filter(|p| differs(p)).any(|p| parameters::invalidates(*p).contains(&stage))
+    }
+
+    /// True while a part of the answer, made by `stage`, is not yet what the parameters on the screen ask for.
+    #[must_use]
+    pub fn stale<T>(&self, part: &Part<T>, stage: Stage) -> bool {
+        part.stale || self.awaits(stage)
+    }
+
+    /// The class that the parameter names, when there is one.
+    #[must_use]
+    pub fn class(&self) -> Option<&str> {
+        self.answer.classes.get(self.settings.class).map(String::as_str)
+    }
+
+    /// Classes shown in Figure 4: the parameter's first, then those it is compared with.
+    #[must_use]
+    pub fn shown_classes(&self) -> Vec<usize> {
+        let count = self.answer.classes.len();
+        let others = self.compared.iter().copied().filter(|class| *class != self.settings.class);
+        std::iter::once(self.settings.class).chain(others).filter(|class| *class < count).collect()
+    }
+
+    /// The model that the list looks at.
+    #[must_use]
+    pub fn model(&self) -> Option<usize> {
+        let listed = self.models.listed(&self.answer);
+        listed.get(self.models.at.min(listed.len().saturating_sub(1))).copied()
+    }
+}

@@ -1,0 +1,255 @@
+//! The only place where the state changes.
+
+use std::sync::Arc;
+
+use super::{Action, Command, Effect, Entry, Figure, Leave, Notice, State, View, parameters};
+use crate::query::{Answer, Parameter, Settings};
+
+/// Lets an action happen. Returns what must now happen outside; never waits.
+pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
+    if !matches!(action, Action::Answer(_) | Action::Resize(..) | Action::Report(_) | Action::Fatal(_)) {
+        state.notice = None;
+    }
+    match action {
+        Action::Quit => return vec![Effect::Leave(Leave::Quit)],
+        Action::Interrupt => return vec![Effect::Leave(Leave::Interrupt)],
+        Action::Suspend => return vec![Effect::Suspend],
+        Action::Redraw => return vec![Effect::Redraw],
+        Action::Rescan => {
+            say(state, "looking at the files again");
+            return vec![Effect::Send(Command::Rescan)];
+        }
+        Action::ToggleSolving => return toggle_solving(state),
+        Action::Choose(parameter) => choose(state, parameter),
+        Action::Turn(by) => return turn(state, by * parameters::steps(state.parameter).0),
+        Action::Leap(by) => return turn(state, by * parameters::steps(state.parameter).1),
+        Action::Reset => return reset(state),
+        Action::ResetAll => {
+            let first = state.first.clone();
+            return adopt(state, first, None);
+        }
+        Action::Undo => return travel(state, true),
+        Action::Redo => return travel(state, false),
+        Action::Commit => return commit(state),
+        Action::Answer(answer) => receive(state, answer),
+        Action::Fatal(reason) => state.fatal = Some(reason),
+        Action::Report(text) => state.notice = Some(Notice { text, bad: true }),
+        Action::Resize(columns, rows) => state.size = (columns, rows),
+        Action::Insert(_) | Action::Erase | Action::EraseAll | Action::Left | Action::Right => typed(state, &action),
+        Action::Edit => state.entry = Some(Entry::default()),
+        other => look(state, &other),
+    }
+    Vec::new()
+}
+
+/// What changes only how the state is looked at.
+fn look(state: &mut State, action: &Action) {
+    match action {
+        Action::Help => state.help = if state.help.is_some() { None } else { Some(0) },
+        Action::Close => {
+            state.help = None;
+            state.entry = None;
+        }
+        Action::Show(view) => show(state, *view),
+        Action::NextView => show(state, state.view.turned(1)),
+        Action::PreviousView => show(state, state.view.turned(-1)),
+        Action::ToggleAxis => state.logarithmic = !state.logarithmic,
+        Action::ToggleFigure => {
+            state.figure = match state.figure {
+                Figure::Map => Figure::Marks,
+                Figure::Marks => Figure::Map,
+            }
+        }
+        Action::Compare => {
+            let class = state.settings.class;
+            if !state.compared.remove(&class) && class < state.answer.classes.len() {
+                state.compared.insert(class);
+            }
+        }
+        Action::CompareNone => state.compared.clear(),
+        Action::CycleFilter => state.models.cycle(&state.answer),
+        Action::Up => step(state, -1),
+        Action::Down => step(state, 1),
+        Action::PageUp => page(state, -1),
+        Action::PageDown => page(state, 1),
+        Action::First => scroll(state, -(isize::MAX / 2)),
+        Action::Last => scroll(state, isize::MAX / 2),
+        _ => {}
+    }
+}
+
+fn say(state: &mut State, text: impl Into<String>) {
+    state.notice = Some(Notice { text: text.into(), bad: false });
+}
+
+fn toggle_solving(state: &mut State) -> Vec<Effect> {
+    if state.fatal.is_some() {
+        return Vec::new();
+    }
+    state.stopped = !state.stopped;
+    vec![Effect::Send(if state.stopped { Command::Stop } else { Command::Resume })]
+}
+
+fn show(state: &mut State, view: View) {
+    if state.view != view {
+        state.view = view;
+        state.scroll = 0;
+    }
+}
+
+fn choose(state: &mut State, parameter: Parameter) {
+    if state.parameter != parameter {
+        state.parameter = parameter;
+        state.history.pause();
+    }
+}
+
+/// One line up or down: in the help, in the list of models, else in the panel of parameters.
+fn step(state: &mut State, by: isize) {
+    if state.help.is_some() || state.view == View::Models {
+        scroll(state, by);
+        return;
+    }
+    let order: Vec<Parameter> = parameters::in_order().collect();
+    let at = order.iter().position(|parameter| *parameter == state.parameter).unwrap_or(0) as isize;
+    choose(state, order[(at + by).rem_euclid(order.len() as isize) as usize]);
+}
+
+fn page(state: &mut State, by: isize) {
+    let rows = isize::try_from(state.size.1).unwrap_or(24);
+    scroll(state, by * (rows / 2 - 3).max(1));
+}
+
+fn scroll(state: &mut State, by: isize) {
+    if let Some(line) = &mut state.help {
+        *line = line.saturating_add_signed(by).min(super::keymap::lines());
+    } else if state.view == View::Models {
+        let answer = Arc::clone(&state.answer);
+        state.models.shift(by, &answer);
+    } else {
+        state.scroll = state.scroll.saturating_add_signed(by).min(furthest(state));
+    }
+}
+
+/// No view has more lines than this; a view that ends earlier stops there by itself.
+fn furthest(state: &State) -> usize {
+    match state.view {
+        View::Tables => state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| t.rows.len() + 4).sum(),
+        View::Pipeline => state.answer.warnings.len(),
+        View::Selection => state.answer.marks.value.iter().flat_map(|m| m.iter()).map(Vec::len).max().unwrap_or(0),
+        View::Overview | View::Curves | View::Models => 0,
+    }
+}
+
+fn turn(state: &mut State, steps: isize) -> Vec<Effect> {
+    let classes = state.answer.classes.len();
+    let parameter = state.parameter;
+    let mut next = state.settings.clone();
+    next.step(parameter, steps, classes);
+    if parameter == Parameter::K {
+        // Beyond kmax there is nothing to read off. A k that is beyond it already may still be turned down.
+        next.k = next.k.min(state.settings.kmax);
+    }
+    let turned = next != state.settings;
+    if !turned && parameter.choices().is_empty() {
+        let (least, greatest) = parameters::range(parameter, &state.settings, classes);
+        let end = if steps < 0 { least } else { greatest };
+        say(state, format!("{} ends at {end}", parameter.name()));
+    }
+    adopt(state, next, Some(parameter))
+}
+
+fn reset(state: &mut State) -> Vec<Effect> {
+    let mut next = state.settings.clone();
+    let first = state.first.get(state.parameter);
+    if next.set(state.parameter, &first, state.answer.classes.len()).is_err() {
+        return Vec::new();
+    }
+    adopt(state, next, None)
+}
+
+/// Takes new settings as the ones on the screen, and asks the engine for them.
+fn adopt(state: &mut State, next: Settings, turned: Option<Parameter>) -> Vec<Effect> {
+    if next == state.settings {
+        return Vec::new();
+    }
+    state.history.remember(&state.settings, turned);
+    state.settings = next.clone();
+    vec![Effect::Send(Command::Set(next))]
+}
+
+fn travel(state: &mut State, back: bool) -> Vec<Effect> {
+    let settings = state.settings.clone();
+    let found = if back { state.history.undo(&settings) } else { state.history.redo(&settings) };
+    let Some(next) = found else {
+        say(state, if back { "nothing to undo" } else { "nothing to redo" });
+        return Vec::new();
+    };
+    let changed: Vec<String> = Parameter::ALL
+        .into_iter()
+        .filter(|parameter| next.get(*parameter) != settings.get(*parameter))
+        .map(|parameter| format!("{} {}", parameter.name(), next.get(parameter)))
+        .collect();
+    if let [_] = changed[..]
+        && let Some(only) = Parameter::ALL.into_iter().find(|p| next.get(*p) != settings.get(*p))
+    {
+        state.parameter = only;
+    }
+    let word = if back { "undone" } else { "redone" };
+    say(state, format!("{word}: {}", changed.join(", ")));
+    state.settings = next.clone();
+    vec![Effect::Send(Command::Set(next))]
+}
+
+fn typed(state: &mut State, action: &Action) {
+    let Some(entry) = &mut state.entry else { return };
+    match action {
+        Action::Insert(character) => entry.insert(*character),
+        Action::Erase => {
+            let erased = entry.erase();
+            if !erased && entry.text().is_empty() {
+                state.entry = None;
+            }
+        }
+        Action::EraseAll => entry.erase_all(),
+        Action::Left => entry.shift(-1),
+        Action::Right => entry.shift(1),
+        _ => {}
+    }
+}
+
+fn commit(state: &mut State) -> Vec<Effect> {
+    let Some(entry) = &mut state.entry else { return Vec::new() };
+    let text = entry.text();
+    if text.trim().is_empty() {
+        state.entry = None;
+        return Vec::new();
+    }
+    let mut next = state.settings.clone();
+    let set = parameters::parse(state.parameter, &text, &state.settings, &state.answer.classes)
+        .and_then(|value| next.set(state.parameter, &value, state.answer.classes.len()));
+    match set {
+        Ok(()) => {
+            state.entry = None;
+            adopt(state, next, None)
+        }
+        Err(message) => {
+            entry.error = Some(message);
+            Vec::new()
+        }
+    }
+}
+
+fn receive(state: &mut State, answer: Arc<Answer>) {
+    // An answer that was overtaken on its way says nothing new.
+    if answer.serial < state.answer.serial {
+        return;
+    }
+    state.answer = answer;
+    let classes = state.answer.classes.len();
+    state.compared.retain(|class| *class < classes);
+    state.scroll = state.scroll.min(furthest(state));
+}
+
+#[cfg(test)]
+mod tests;
