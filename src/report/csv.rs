@@ -12,7 +12,7 @@
 //! | `score` | `hcbw-error`, `hcbw-adr`, `adaboost` | | `error`, `adr` | `train`, `query` |
 //! | `selected` | `hcbw-error`, `hcbw-adr` | eigenvalue | `step` (the last move that took it, from 1) | |
 //! | `selected` | a class (AdaBoost) | eigenvalue | `alpha`, `low`, `mean`, `high` | |
-//! | `model` | the model | | `vertices`, `triangles`, `eigenvalues`, `defects` (how many) | `train`, `query` |
+//! | `model` | the model | | `vertices`, `triangles`, `eigenvalues`, `defects` (how many), `measure` (1ᵀB1) | `train`, `query` |
 //! | `spectrum` | the model | k | `eigenvalue` (with `--spectra`) | `train`, `query` |
 //!
 //! # The folder
@@ -111,8 +111,19 @@ fn classes(document: &Document) -> io::Result<Vec<u8>> {
 }
 
 fn models(document: &Document) -> io::Result<Vec<u8>> {
-    let heads =
-        ["model", "file", "class", "role", "state", "vertices", "triangles", "eigenvalues", "decided", "defects"];
+    let heads = [
+        "model",
+        "file",
+        "class",
+        "role",
+        "state",
+        "vertices",
+        "triangles",
+        "measure",
+        "eigenvalues",
+        "decided",
+        "defects",
+    ];
     sheet(&heads, |out| {
         document.models.iter().try_for_each(|model| {
             out.write_record([
@@ -127,6 +138,7 @@ fn models(document: &Document) -> io::Result<Vec<u8>> {
                 },
                 &optional(model.vertices),
                 &optional(model.triangles),
+                &maybe(model.measure),
                 &optional(model.eigenvalues),
                 model.decided.as_deref().unwrap_or_default(),
                 &model.defects.join(" | "),
@@ -330,6 +342,9 @@ fn long_models(long: &mut Long<'_>, document: &Document) -> io::Result<()> {
             if let Some(value) = value {
                 long.row("model", &model.name, None, measure, role(model.role), value as f64)?;
             }
+        }
+        if let Some(measure) = model.measure {
+            long.row("model", &model.name, None, "measure", role(model.role), measure)?;
         }
     }
     let set = |name: &str| {

@@ -143,7 +143,7 @@ pub enum ModelStatus {
 }
 
 /// A model as reports list it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ModelRecord {
     /// Its name, unique in the data set.
     pub name: String,
@@ -162,6 +162,8 @@ pub struct ModelRecord {
     pub vertices: Option<usize>,
     /// Triangles, once it has been read.
     pub triangles: Option<usize>,
+    /// Total mass 1ᵀB1: the area for FEM, the number of vertices for cot.
+    pub measure: Option<f64>,
     /// Eigenvalues used: kmax, or all there are where the mesh has fewer.
     pub eigenvalues: Option<usize>,
     /// The class AdaBoost decides for it.

@@ -24,6 +24,7 @@ fn model(name: &str, class: u32, role: Role, defects: &[&str]) -> ModelRow {
         state: ModelState::Ready { source: Source::Ran, count: 12, seconds: 0.25 },
         size: Some((1000 + class as usize, 1996 + 2 * class as usize)),
         defects: Arc::new(defects.iter().map(|&defect| defect.to_owned()).collect()),
+        measure: Some(1.5 + f64::from(class)),
         eigenvalues: Some(Arc::new(eigenvalues)),
     }
 }
@@ -52,7 +53,7 @@ pub(super) fn answer() -> Answer {
     ];
     models[7].state =
         ModelState::Out { reason: "shapes/ring|x/r2.off: line 3: expected three numbers, found \"nan x\"".to_owned() };
-    (models[7].size, models[7].eigenvalues) = (None, None);
+    (models[7].size, models[7].measure, models[7].eigenvalues) = (None, None, None);
     models[4].state = ModelState::Ready { source: Source::Disk, count: 12, seconds: 0.0 };
 
     let score = |train, query| Score { train, query: Some(query) };

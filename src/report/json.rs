@@ -16,7 +16,7 @@
 //! | `parameters` | name → value, as `--set NAME=VALUE` takes them; `class` counts from 1 |
 //! | `complete` | whether everything was computed (always, in a report of `tui report`) |
 //! | `classes` | array of `{"name", "train", "query", "skipped"}` |
-//! | `models` | array of `{"name", "file", "class", "role": "train"\|"query", "state": "ready"\|"skipped"\|"waiting", "reason" (of a skipped one), "vertices", "triangles", "eigenvalues" (how many are used), "decided" (AdaBoost's class), "defects": [text]}` |
+//! | `models` | array of `{"name", "file", "class", "role": "train"\|"query", "state": "ready"\|"skipped"\|"waiting", "reason" (of a skipped one), "vertices", "triangles", "measure" (1ᵀB1), "eigenvalues" (how many are used), "decided" (AdaBoost's class), "defects": [text]}` |
 //! | `skipped` | array of `{"name", "file", "reason"}` |
 //! | `warnings` | array of text: what was passed over in the folder |
 //! | `tables` | array of `{"number", "title", "columns": [text], "rows": [[number\|text\|null]]}`, figures unrounded |

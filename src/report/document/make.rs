@@ -37,6 +37,7 @@ impl Document {
                 reason: reason(row),
                 vertices: row.size.map(|(vertices, _)| vertices),
                 triangles: row.size.map(|(_, triangles)| triangles),
+                measure: row.measure,
                 eigenvalues: used(row, settings.kmax),
                 decided: decided.get(&at).map(|&class| class_name(class)),
                 defects: row.defects.to_vec(),
