@@ -1,80 +1,47 @@
 //! Features and labels → distances, rankings, classification error, average dynamic recall.
+//!
+//! Definitions shared by everything above:
+//!
+//! - A model is asked against the training models D: as one of them with itself left out, or as a query. Who asks whom
+//!   is an [`Exam`].
+//! - It goes to the class of its nearest model. ε = wrong / asked.
+//! - Ties go to the smaller distance, then to the lower model index, everywhere. Distances are compared by their
+//!   [sums](Distance::sum): a square root would merge sums that differ in their last bits.
+//! - A mean over nothing is the worst figure there is: ε = 1, mean ADR = 0. So are the figures of an empty selection.
 
-use serde::{Deserialize, Serialize};
+#![allow(
+    clippy::inline_always,
+    reason = "what is not inlined is not compiled for the wider vectors of pulp's dispatch"
+)]
 
-/// A feature vector per model: `rows` models by `cols` features, row after row.
-///
-/// Column j belongs to eigenvalue index j + 1.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Features {
-    rows: usize,
-    cols: usize,
-    data: Vec<f64>,
-}
+pub(crate) use self::{
+    columns::Columns,
+    distance::{Chi2, L1, L2, Term, by_distance},
+    nearest::Nearest,
+};
+pub use self::{
+    distance::Distance,
+    exam::Exam,
+    features::Features,
+    ranking::{adr, confusion, figures, rank},
+    recall::Recall,
+    sample::Sample,
+    sweep::{Sweep, sweep},
+};
 
-impl Features {
-    /// Stacks rows of equal length.
-    ///
-    /// # Panics
-    /// When the rows differ in length.
-    #[must_use]
-    pub fn from_rows<R: AsRef<[f64]>>(rows: impl IntoIterator<Item = R>) -> Self {
-        let mut features = Self::default();
-        for row in rows {
-            let row = row.as_ref();
-            assert!(features.rows == 0 || row.len() == features.cols, "rows of different lengths");
-            features.cols = row.len();
-            features.rows += 1;
-            features.data.extend_from_slice(row);
-        }
-        features
-    }
+mod columns;
+mod distance;
+mod exam;
+mod features;
+mod nearest;
+mod ranking;
+mod recall;
+mod sample;
+#[cfg(test)]
+pub(crate) mod samples;
+mod sweep;
 
-    /// Number of models.
-    #[must_use]
-    pub const fn rows(&self) -> usize {
-        self.rows
-    }
-
-    /// Number of features of each model.
-    #[must_use]
-    pub const fn cols(&self) -> usize {
-        self.cols
-    }
-
-    /// The features of model `row`.
-    ///
-    /// # Panics
-    /// When `row` is not below [`Features::rows`].
-    #[must_use]
-    pub fn row(&self, row: usize) -> &[f64] {
-        &self.data[row * self.cols..(row + 1) * self.cols]
-    }
-
-    /// The first `cols` features of every model.
-    ///
-    /// # Panics
-    /// When there are fewer than `cols`.
-    #[must_use]
-    pub fn prefix(&self, cols: usize) -> Self {
-        Self::from_rows((0..self.rows).map(|row| &self.row(row)[..cols]))
-    }
-}
-
-/// The distance between the selected features of two models.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Distance {
-    /// Euclidean, the paper's.
-    #[default]
-    L2,
-    /// Sum of absolute differences.
-    L1,
-    /// Σ (a − b)² / (|a| + |b|), terms with a = b = 0 left out.
-    Chi2,
-}
-
-impl Distance {
-    /// All of them, in the order in which they are offered.
-    pub const ALL: [Self; 3] = [Self::L2, Self::L1, Self::Chi2];
-}
+/// The computation was told that its result is no longer wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
