@@ -1,0 +1,66 @@
+//! The candidates of one move against each other.
+
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicU64, AtomicUsize, Ordering},
+};
+
+use rayon::prelude::*;
+
+use crate::metrics::Cancelled;
+
+/// A total loss and the eigenvalue index that causes it: of two, the lesser is the better move.
+pub(super) type Mark = (u128, u32);
+
+/// How far a candidate came.
+pub(super) enum Outcome {
+    /// Its total loss, below the bound.
+    Lower(u128),
+    /// Given up: it can't stay below the bound. The loss it would come to, roughly.
+    GivenUp(f64),
+}
+
+/// Finds the best move, giving up on candidates as soon as they can't be it.
+///
+/// What is given up depends on timing, the winner does not: it is the least [`Mark`] below the loss at the start.
+pub(super) struct Race {
+    /// By index: the loss last seen, as the bits of an `f64`. Whoever did well in the last race starts first.
+    form: Vec<AtomicU64>,
+}
+
+impl Race {
+    /// For indices 1…`cols`.
+    pub(super) fn new(cols: usize) -> Self {
+        Self { form: (0..=cols).map(|_| AtomicU64::new(0)).collect() }
+    }
+
+    /// The candidate with the least loss below `loss`; of several the lowest index.
+    pub(super) fn run<F>(&self, candidates: &[u32], loss: u128, evaluate: F) -> Result<Option<Mark>, Cancelled>
+    where
+        F: Fn(u32, &dyn Fn() -> Mark) -> Result<Outcome, Cancelled> + Sync,
+    {
+        // Index 0 comes before all: an equal loss is not below.
+        let best = Mutex::new((loss, 0));
+        let lock = || best.lock().unwrap_or_else(PoisonError::into_inner);
+        let form = |index: u32| f64::from_bits(self.form[index as usize].load(Ordering::Relaxed));
+        let mut order: Vec<(f64, u32)> = candidates.iter().map(|&index| (form(index), index)).collect();
+        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let next = AtomicUsize::new(0);
+        (0..rayon::current_num_threads()).into_par_iter().try_for_each(|_| {
+            while let Some(&(_, index)) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let form = match evaluate(index, &|| *lock())? {
+                    Outcome::GivenUp(form) => form,
+                    Outcome::Lower(lower) => {
+                        let mut best = lock();
+                        *best = (*best).min((lower, index));
+                        lower as f64
+                    }
+                };
+                self.form[index as usize].store(form.to_bits(), Ordering::Relaxed);
+            }
+            Ok(())
+        })?;
+        let best = best.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok((best.1 > 0).then_some(best))
+    }
+}
