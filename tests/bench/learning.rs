@@ -1,0 +1,129 @@
+//! How long selection and metrics take: `cargo bench --bench learning [-- FEATURES.csv]`.
+//!
+//! On a seeded synthetic sample of the size of SHREC 2007 (285 training models of 19 classes, 95 queries, 500 features),
+//! and on a CSV file `model,class,role,f1,f2,…` when one is given.
+
+#![allow(clippy::print_stdout, clippy::unwrap_used)]
+
+use std::time::{Duration, Instant};
+
+use eigenselect::{
+    metrics::{Distance, Features},
+    selection::{Cost, boost, climb},
+    study::{self, Sample, climbed, first_k},
+    watch::Unwatched,
+};
+
+/// Runs of which the shortest is shown.
+const RUNS: usize = 5;
+
+fn main() {
+    println!("{} threads", rayon::current_num_threads());
+    report("synthetic", &synthetic());
+    for path in std::env::args().skip(1).filter(|argument| !argument.starts_with('-')) {
+        report(&path, &read(&path));
+    }
+}
+
+fn report(name: &str, sample: &Sample) {
+    let (train, query, cols) = (sample.train.rows(), sample.query.rows(), sample.train.cols());
+    println!("\n{name}: {train} + {query} models, {cols} features, {} classes", sample.classes);
+    for distance in Distance::ALL {
+        println!("  {distance:?}");
+        time("first-k", || {
+            let curves = first_k(sample, distance, &Unwatched).unwrap();
+            let (error, adr) = (curves.error.at(curves.best_error), curves.adr.at(curves.best_adr));
+            format!("ε {error:.4?} at {}, ADR {adr:.4?} at {}", curves.best_error, curves.best_adr)
+        });
+        for cost in [Cost::Error, Cost::Adr] {
+            time(&format!("HCBw {cost:?}"), || {
+                let climb = climb(sample, distance, cost, &Unwatched).unwrap();
+                let climbed = climbed(sample, distance, &climb);
+                let (error, adr) = (climbed.error, climbed.adr);
+                format!("{:?}, {} moves, ε {error:.4?}, ADR {adr:.4?}", climb.selected, climb.steps.len())
+            });
+        }
+    }
+    for rounds in [20, 64] {
+        time(&format!("AdaBoost, T = {rounds}"), || {
+            let boosted = study::boosted(sample, &boost(sample, rounds, &Unwatched).unwrap());
+            let (chosen, ties) = (boosted.mean_chosen, boosted.mean_ties);
+            format!("ε {:.4?}, sel {chosen:.2} chosen, {ties:.2} with ties", boosted.error)
+        });
+    }
+}
+
+fn time(name: &str, run: impl Fn() -> String) {
+    let mut least = Duration::MAX;
+    let mut said = String::new();
+    for _ in 0..RUNS {
+        let start = Instant::now();
+        said = run();
+        least = least.min(start.elapsed());
+    }
+    println!("    {name:<18} {:8.2} ms   {said}", least.as_secs_f64() * 1e3);
+}
+
+/// Spectra that grow linearly, bent by class, pose and noise, and divided by their last value.
+fn synthetic() -> Sample {
+    const CLASSES: u32 = 19;
+    const COLS: u32 = 500;
+    let mut state = 20_070_u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut sample = Sample { classes: CLASSES as usize, ..Sample::default() };
+    let (mut train, mut query) = (Vec::new(), Vec::new());
+    for class in 0..CLASSES {
+        let bend = 0.3 + 0.3 * random();
+        let waves: Vec<(f64, f64)> = (0..4).map(|_| (random(), 0.01 + 0.2 * random())).collect();
+        for model in 0..20 {
+            let bend = bend + 0.1 * (random() - 0.5);
+            let shift = 0.6 * random();
+            let mut row: Vec<f64> = (0..COLS)
+                .map(|k| {
+                    let k = f64::from(k);
+                    let wave: f64 = waves.iter().map(|(a, f)| a * (f * k + shift).sin()).sum();
+                    k + bend * k.powf(0.7) * (1.0 + wave) + 0.3 * random()
+                })
+                .collect();
+            let last = row[COLS as usize - 1];
+            for value in &mut row {
+                *value /= last;
+            }
+            let (rows, labels) = if model < 15 {
+                (&mut train, &mut sample.train_labels)
+            } else {
+                (&mut query, &mut sample.query_labels)
+            };
+            rows.push(row);
+            labels.push(class);
+        }
+    }
+    sample.train = Features::from_rows(train);
+    sample.query = Features::from_rows(query);
+    sample
+}
+
+fn read(path: &str) -> Sample {
+    let mut sample = Sample::default();
+    let (mut train, mut query) = (Vec::new(), Vec::new());
+    let mut classes: Vec<String> = Vec::new();
+    for record in csv::Reader::from_path(path).unwrap().records() {
+        let record = record.unwrap();
+        let class = classes.iter().position(|class| class == &record[1]).unwrap_or_else(|| {
+            classes.push(record[1].to_owned());
+            classes.len() - 1
+        });
+        let row: Vec<f64> = record.iter().skip(3).map(|value| value.parse().unwrap()).collect();
+        let (rows, labels) = if &record[2] == "train" {
+            (&mut train, &mut sample.train_labels)
+        } else {
+            (&mut query, &mut sample.query_labels)
+        };
+        rows.push(row);
+        labels.push(class as u32);
+    }
+    Sample { train: Features::from_rows(train), query: Features::from_rows(query), classes: classes.len(), ..sample }
+}
