@@ -1,8 +1,26 @@
 //! A folder of meshes → labelled models with their split.
+//!
+//! | layout | classes | split |
+//! |---|---|---|
+//! | Princeton `.cla`: `train.cla` and `query.cla` (or `test.cla`) in the folder, or named by [`Options`] | the files' | the files' |
+//! | `DIR/train/<class>/…`, `DIR/query/<class>/…` (or `test`) | folders | folders |
+//! | `DIR/<class>/train/…`, `DIR/<class>/query/…` (or `test`) | folders | folders |
+//! | `DIR/<class>/…` | folders | the first three quarters of each class train |
+//!
+//! Below a class folder a mesh may lie at any depth. Hidden files, and files that are no mesh by their name's ending,
+//! are passed over without a word.
 
-use std::path::PathBuf;
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 
 use serde::{Deserialize, Serialize};
+
+mod folders;
+mod name;
+mod princeton;
+mod walk;
 
 /// Whether a model trains or asks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -40,4 +58,141 @@ pub struct DataSet {
     pub layout: String,
     /// What was passed over, and why; each names the file.
     pub warnings: Vec<String>,
+}
+
+/// What the user says about a folder.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Options {
+    /// The `.cla` file of the training models, instead of `train.cla` in the folder. A relative path counts from the
+    /// working directory or, where there is no such file, from the folder.
+    pub train: Option<PathBuf>,
+    /// The `.cla` file of the query models. Without it the folder's own is not used either, once `train` is given.
+    pub query: Option<PathBuf>,
+}
+
+/// Why a folder is no data set.
+#[derive(Debug, thiserror::Error)]
+pub enum DataSetError {
+    /// The folder or a `.cla` file cannot be read.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The root is a file.
+    #[error("{}: not a folder", .0.display())]
+    NotAFolder(PathBuf),
+    /// A `.cla` file that cannot be understood.
+    #[error("{}, line {line}: {defect}", path.display())]
+    Cla {
+        /// Which.
+        path: PathBuf,
+        /// Where, counted from 1.
+        line: usize,
+        /// What is wrong, with the words.
+        defect: String,
+    },
+    /// Query models are named, training models are not.
+    #[error("{}: names the query models, but no file names the training models", .0.display())]
+    NoTrainingFile(PathBuf),
+    /// Meshes lie in the folder itself, so nothing says of which class they are.
+    #[error(
+        "{}: {count} meshes ({example}, …) lie in the folder itself, so their classes are not known. Make it\n{LAYOUTS}",
+        root.display()
+    )]
+    Unsorted {
+        /// The folder.
+        root: PathBuf,
+        /// How many meshes.
+        count: usize,
+        /// The first one's file name.
+        example: String,
+    },
+    /// There is nothing to learn from.
+    #[error("{}: no mesh (.obj, .off, .ply, .stl) to train with. Make it\n{LAYOUTS}", .0.display())]
+    Empty(PathBuf),
+}
+
+/// What a data set may look like, as errors tell it.
+const LAYOUTS: &str = "  DIR/<class>/<model>.obj               (the first three quarters of each class train), or
+  DIR/train/<class>/… and DIR/query/<class>/…, or
+  DIR/<class>/train/… and DIR/<class>/query/…, or
+  DIR/train.cla and DIR/query.cla       (Princeton format) with the models anywhere below DIR";
+
+/// Finds the labelled models of a folder. No mesh is opened.
+///
+/// # Errors
+/// [`DataSetError`]: the folder cannot be read, a `.cla` file is malformed, or there are no labelled training models.
+/// What is wrong with single files or folders is a warning.
+pub fn open(root: &Path, options: &Options) -> Result<DataSet, DataSetError> {
+    let metadata = root.metadata().map_err(|source| DataSetError::Io { path: root.to_owned(), source })?;
+    if !metadata.is_dir() {
+        return Err(DataSetError::NotAFolder(root.to_owned()));
+    }
+    let found = match princeton::files(root, options)? {
+        Some(files) => princeton::open(root, &files)?,
+        None => folders::open(root)?,
+    };
+    found.finish(root)
+}
+
+/// What a layout yields: models without their final names, in any order.
+#[derive(Debug, Default)]
+struct Found {
+    classes: Vec<String>,
+    files: Vec<Labelled>,
+    layout: String,
+    warnings: Vec<String>,
+}
+
+/// A mesh file with its label.
+#[derive(Debug, Clone)]
+struct Labelled {
+    path: PathBuf,
+    class: usize,
+    role: Role,
+}
+
+impl Found {
+    /// Names the models, orders them, and leaves out classes without any.
+    fn finish(self, root: &Path) -> Result<DataSet, DataSetError> {
+        let Self { classes, files, layout, mut warnings } = self;
+        if !files.iter().any(|file| file.role == Role::Train) {
+            return Err(DataSetError::Empty(root.to_owned()));
+        }
+        let mut numbers = vec![None; classes.len()];
+        let mut kept = Vec::new();
+        for (class, name) in classes.into_iter().enumerate() {
+            let of_class = || files.iter().filter(|file| file.class == class);
+            if of_class().next().is_none() {
+                continue;
+            }
+            if !of_class().any(|file| file.role == Role::Train) {
+                warnings.push(format!("class {name}: no model to train with, only queries"));
+            }
+            numbers[class] = Some(kept.len() as u32);
+            kept.push(name);
+        }
+        if kept.len() == 1 {
+            warnings.push(format!(
+                "{}: only one class ({}), so there is nothing to tell apart",
+                root.display(),
+                kept[0]
+            ));
+        }
+        let names = name::unique(root, files.iter().map(|file| file.path.as_path()));
+        let mut models: Vec<Model> = files
+            .into_iter()
+            .zip(names)
+            .filter_map(|(Labelled { path, class, role }, name)| {
+                Some(Model { name, path, class: numbers[class]?, role })
+            })
+            .collect();
+        models.sort_by(|a, b| {
+            (a.class, a.role).cmp(&(b.class, b.role)).then_with(|| name::natural(a.name.as_bytes(), b.name.as_bytes()))
+        });
+        Ok(DataSet { root: root.to_owned(), classes: kept, models, layout, warnings })
+    }
 }

@@ -1,0 +1,87 @@
+//! The data of an ASCII PLY file: a line for each record.
+
+use super::{Element, Header, Parts, ReadError, Role, Text, header::Use, inside};
+use crate::mesh::read::{
+    Place,
+    text::{float, integer, quoted},
+};
+
+/// Reads all elements.
+pub(super) fn read(mut text: Text<'_>, header: &Header, parts: &mut Parts) -> Result<(), ReadError> {
+    for element in &header.elements {
+        if element.properties.is_empty() {
+            continue;
+        }
+        for number in 0..element.count {
+            record(&mut text, element, number, parts)?;
+        }
+    }
+    Ok(())
+}
+
+fn record(text: &mut Text<'_>, element: &Element, number: usize, parts: &mut Parts) -> Result<(), ReadError> {
+    let mut position = [0.0; 3];
+    let mut first = None;
+    for property in &element.properties {
+        let length = if property.list.is_some() {
+            let word = next(text, element, number)?;
+            first.get_or_insert(text.line());
+            integer(word)
+                .and_then(|length| u32::try_from(length).ok())
+                .ok_or_else(|| bad(text, element, number, word))?
+        } else {
+            1
+        };
+        for _ in 0..length {
+            let word = next(text, element, number)?;
+            first.get_or_insert(text.line());
+            match property.meaning {
+                Use::Nothing => {}
+                Use::Coordinate(axis) => {
+                    position[axis] = float(word).ok_or_else(|| bad(text, element, number, word))?;
+                }
+                Use::Corners => {
+                    let vertex = integer(word).ok_or_else(|| bad(text, element, number, word))?;
+                    parts.corner(element.role, vertex).map_err(|vertex| ReadError::Index {
+                        face: number,
+                        place: Place::Line(text.line()),
+                        vertex,
+                        vertices: parts.announced,
+                        base: 0,
+                    })?;
+                }
+            }
+        }
+        if property.meaning == Use::Corners {
+            parts.close(element.role, length as usize);
+        }
+    }
+    let line = first.unwrap_or(text.line());
+    if element.role == Role::Vertex {
+        if let Some(value) = position.into_iter().find(|value| !value.is_finite()) {
+            let place = Place::Line(line);
+            return Err(ReadError::NotFinite { vertex: number, place, value: value.to_string(), base: 0 });
+        }
+        parts.vertices.push(position);
+    }
+    // A record may run over several lines; more on a line than the header declares is another file's header.
+    if let Some(word) = text.word_on_line() {
+        let defect = format!("{} has {} after its last value", inside(element, number), quoted(word));
+        return Err(ReadError::Malformed { place: Place::Line(text.line()), defect });
+    }
+    text.next_line();
+    Ok(())
+}
+
+fn next<'a>(text: &mut Text<'a>, element: &Element, number: usize) -> Result<&'a [u8], ReadError> {
+    text.word().ok_or_else(|| ReadError::Truncated {
+        inside: inside(element, number),
+        place: Place::Line(text.line()),
+        expected: format!("{} of {} were announced", element.count, element.name),
+    })
+}
+
+fn bad(text: &Text<'_>, element: &Element, number: usize, word: &[u8]) -> ReadError {
+    let defect = format!("{} has {} where a number should be", inside(element, number), quoted(word));
+    ReadError::Malformed { place: Place::Line(text.line()), defect }
+}
