@@ -91,7 +91,12 @@ fn a_pipe_is_not_waited_for() {
         println!("skipped: no mkfifo here");
         return;
     }
-    miss_then_healed(&room, &key, "pipe");
+    let (done, waits) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        miss_then_healed(&room, &key, "pipe");
+        let _ = done.send(());
+    });
+    waits.recv_timeout(std::time::Duration::from_secs(20)).expect("the store waits for the pipe's writer");
 }
 
 #[test]
