@@ -17,7 +17,7 @@ pub struct Boosted {
     pub classes: Vec<Strong>,
     /// ε of the class with the largest p(C|M).
     pub error: Score,
-    /// Mean over the classes of the number of distinct eigenvalues chosen.
+    /// Mean over the classes that have training models of the number of distinct eigenvalues chosen.
     pub mean_chosen: f64,
     /// The same with every eigenvalue that tied for the least error.
     pub mean_ties: f64,
@@ -69,8 +69,9 @@ pub fn boosted(sample: &Sample, classes: &[Strong]) -> Boosted {
         query: (!query.is_empty()).then(|| wrong(&query, &sample.query_labels)),
     };
     let mean = |count: SelCount| {
-        let sum: usize = classes.iter().map(|strong| strong.selected(count)).sum();
-        sum as f64 / classes.len().max(1) as f64
+        let known = || (0..classes.len()).filter(|&class| ranges.known(class));
+        let sum: usize = known().map(|class| classes[class].selected(count)).sum();
+        sum as f64 / known().count().max(1) as f64
     };
     Boosted {
         classes: classes.to_vec(),
@@ -135,7 +136,7 @@ mod tests {
         // 9 lies outside of both ranges, S is the same for both: the lower class.
         assert_eq!(boosted.decided, [0, 0, 1, 1, 0, 1, 0]);
         assert_eq!((boosted.error.train, boosted.error.query), (0.0, Some(1.0 / 3.0)));
-        assert_eq!((boosted.mean_chosen, boosted.mean_ties), (2.0 / 3.0, 2.0 / 3.0));
+        assert_eq!((boosted.mean_chosen, boosted.mean_ties), (1.0, 1.0));
     }
 
     #[test]
@@ -143,7 +144,7 @@ mod tests {
         let classes = [vec![round(1, 1.0), round(1, 0.5)], vec![round(1, 1.0), round(2, 0.5)], vec![]];
         let classes = classes.map(|rounds| Strong { rounds });
         let boosted = boosted(&sample(), &classes);
-        assert_eq!((boosted.mean_chosen, boosted.mean_ties), (1.0, 4.0 / 3.0));
+        assert_eq!((boosted.mean_chosen, boosted.mean_ties), (1.5, 2.0));
     }
 
     #[test]
