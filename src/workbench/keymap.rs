@@ -199,7 +199,7 @@ fn in_one_view() -> Vec<Row> {
             In(View::Selection),
             vec![(Char('f'), Action::ToggleFigure)],
             "",
-            "the map (Figure 5) or the eigenvalues (Figure 4)",
+            "the map (Figure 5), the eigenvalues (Figure 4), or hill climbing",
             "figure",
         ),
         (

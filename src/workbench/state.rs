@@ -49,7 +49,7 @@ impl View {
     }
 }
 
-/// Which figure of the paper the selection view shows where there is room for one.
+/// What the selection view shows where there is room for one figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Figure {
     /// Figure 5: a column per class, the selected bands along the spectrum.
@@ -57,6 +57,8 @@ pub enum Figure {
     Map,
     /// Figure 4: eigenvalue against index, a mark per class.
     Marks,
+    /// The way that hill climbing took.
+    Climb,
 }
 
 /// A line for the user, shown until the next key.

@@ -57,7 +57,8 @@ fn look(state: &mut State, action: &Action) {
         Action::ToggleFigure => {
             state.figure = match state.figure {
                 Figure::Map => Figure::Marks,
-                Figure::Marks => Figure::Map,
+                Figure::Marks => Figure::Climb,
+                Figure::Climb => Figure::Map,
             }
         }
         Action::Compare => {

@@ -1,0 +1,167 @@
+//! ε and mean ADR against k, on the training models and on the queries.
+//!
+//! ```text
+//!  ε against k                        ━ D  ┅ Q
+//!  ◆ best k 8: D 0.242 Q 0.300  ● k 10: D 0.274 Q 0.311
+//!  0.60 ┤⡄        ┊
+//!  0.40 ┤⠘⢄      ┊
+//!  0.20 ┤   ⠉⠒◆⠤⠔●⠉⠉⠉⠉
+//!       └┬──┬───┬──┴──┬──
+//!        1  2   5  10 20
+//!  mean ADR against k
+//!  (the same)
+//! ```
+
+use super::{
+    dots::Stroke,
+    look::Role,
+    number,
+    pane::{self, Pane},
+    plot::{Axis, Mark, Plot, Series},
+    text,
+};
+use crate::{
+    query::Stage,
+    study::{Curve, FirstK, Score},
+    workbench::State,
+};
+
+/// Which of the two figures.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Figure {
+    /// Figure 3.
+    Error,
+    /// Figure 6.
+    Adr,
+}
+
+impl Figure {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Error => "ε",
+            Self::Adr => "mean ADR",
+        }
+    }
+
+    const fn curve(self, first_k: &FirstK) -> (&Curve, usize) {
+        match self {
+            Self::Error => (&first_k.error, first_k.best_error),
+            Self::Adr => (&first_k.adr, first_k.best_adr),
+        }
+    }
+}
+
+/// The view.
+pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
+    let mut rest = pane.area();
+    let half = rest.height.div_ceil(2);
+    let upper = pane::cut_top(&mut rest, half);
+    chart(state, Figure::Error, &mut pane.part(upper), false);
+    chart(state, Figure::Adr, &mut pane.part(rest), false);
+}
+
+/// A heading with a word on what is stale; returns the column after it.
+pub(super) fn heading(pane: &mut Pane<'_>, y: u16, title: &str, stale: bool) -> u16 {
+    let room = (pane.width() as usize).saturating_sub(1);
+    let x = pane.put(1, y, &text::fit(title, room), Role::Strong);
+    let mark = if pane.width() >= 40 { "  ◌ stale" } else { " ◌" };
+    if stale { pane.put(x, y, mark, Role::Warn) } else { x }
+}
+
+/// What stands where nothing is there to be shown.
+pub(super) fn nothing(state: &State, pane: &mut Pane<'_>, y: u16) {
+    let progress = &state.answer.progress;
+    let message = if state.fatal.is_some() {
+        "the engine has ended"
+    } else if !progress.complete() || progress.total == 0 {
+        "waiting for spectra"
+    } else if state.answer.members.is_empty() {
+        "no model takes part: see Models"
+    } else {
+        "not there yet"
+    };
+    pane.put(1, y, &text::fit(message, (pane.width() as usize).saturating_sub(1)), Role::Faint);
+}
+
+fn both(score: Option<Score>) -> String {
+    let (train, query) = number::score(score);
+    match score.and_then(|score| score.query) {
+        Some(_) => format!("D {train} Q {query}"),
+        None => format!("D {train}"),
+    }
+}
+
+/// One figure; `small` has one line of words above the plot.
+pub(super) fn chart(state: &State, figure: Figure, pane: &mut Pane<'_>, small: bool) {
+    let stale = state.stale(&state.answer.first_k, Stage::FirstK);
+    let title = if small { figure.name().to_owned() } else { format!("{} against k", figure.name()) };
+    let after = heading(pane, 0, &title, stale && state.answer.first_k.value.is_some());
+    let Some(first_k) = &state.answer.first_k.value else {
+        nothing(state, pane, 1);
+        return;
+    };
+    let (curve, best) = figure.curve(first_k);
+    let kmax = curve.train.len();
+    let k = state.settings.k;
+    let end = pane.width().saturating_sub(1);
+    let said = if small {
+        best_in_short(curve, best)
+    } else if curve.query.is_empty() {
+        "━ D".to_owned()
+    } else {
+        "━ D  ┅ Q".to_owned()
+    };
+    if end > after + text::width(&said) as u16 {
+        if small {
+            pane.put_right(end, 0, &said, Role::Plain);
+        } else {
+            let query = said.find('┅').map_or("", |at| &said[at..]);
+            let train = &said[..said.len() - query.len()];
+            let x = end - text::width(&said) as u16;
+            pane.spans(x, 0, [(train, Role::Train), (query, Role::Query)]);
+        }
+    }
+    if !small {
+        let at_k = if k > kmax { format!("k {k} is beyond {kmax}") } else { format!("k {k}: {}", both(curve.at(k))) };
+        let roomy = pane.width() >= 70;
+        let (word, gap) = if roomy { ("best at ", "     ● ") } else { ("", "  ● ") };
+        let at_best = format!("{word}k {best}: {}", both(curve.at(best)));
+        pane.spans(1, 1, [("◆ ", Role::Strong), (&at_best, Role::Plain), (gap, Role::Strong), (&at_k, Role::Plain)]);
+    }
+    let mut area = pane.area();
+    pane::cut_top(&mut area, if small { 1 } else { 2 });
+    let area = pane::inset(area, 1);
+    let mut pane = pane.part(area);
+    plot(curve, best, k, state.logarithmic).draw(&mut pane);
+    if stale {
+        pane.fade();
+    }
+}
+
+fn best_in_short(curve: &Curve, best: usize) -> String {
+    format!("◆ {}, k {best}", number::ratio(curve.at(best).map(|score| score.train)))
+}
+
+fn plot(curve: &Curve, best: usize, k: usize, logarithmic: bool) -> Plot {
+    let points = |values: &[f64]| (1..).map(f64::from).zip(values.iter().copied()).collect::<Vec<_>>();
+    let mut marks = Vec::new();
+    if let Some(score) = curve.at(k) {
+        if let Some(query) = score.query {
+            marks.push(Mark { at: (k as f64, query), character: '○', role: Role::Strong });
+        }
+        marks.push(Mark { at: (k as f64, score.train), character: '●', role: Role::Strong });
+    }
+    if let Some(score) = curve.at(best) {
+        marks.push(Mark { at: (best as f64, score.train), character: '◆', role: Role::Strong });
+    }
+    Plot {
+        x: Axis::indices(curve.train.len(), logarithmic),
+        y: Axis::around(curve.train.iter().chain(&curve.query).copied()),
+        series: vec![
+            Series { points: points(&curve.query), role: Role::Query, stroke: Stroke::Dotted, plain: '.' },
+            Series { points: points(&curve.train), role: Role::Train, stroke: Stroke::Solid, plain: '#' },
+        ],
+        marks,
+        guide: Some(k as f64),
+    }
+}

@@ -1,0 +1,142 @@
+//! Which eigenvalues AdaBoost selected.
+//!
+//! ```text
+//!  Figure 5  selected bands, a column per class
+//!  1.0 ┤ ░  ▒  █        denser: more of the weight α
+//!  0.5 ┤ █  ░
+//!  0.0 ┤    █  ░
+//!        1  2  3  …
+//!  3 human: 18 eigenvalues, by weight
+//!   12  α 1.73  0.021 – 0.034 …
+//! ```
+//!
+//! On small screens one of the map, Figure 4 and the way of hill climbing; on large ones all three.
+
+use super::{
+    curves, footer,
+    look::Role,
+    number,
+    pane::{self, Pane},
+    text,
+};
+use crate::{
+    query::Stage,
+    study::Mark,
+    workbench::{Figure, State},
+};
+
+mod bands;
+mod climb;
+mod scatter;
+
+/// The view.
+pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
+    let mut rest = pane.area();
+    let listed = match rest.height {
+        0..12 => 0,
+        12..24 => 4,
+        _ => 10,
+    };
+    let list = pane::cut_bottom(&mut rest, listed);
+    if rest.width >= 100 {
+        let half = rest.width / 2;
+        let map_area = pane::cut_left(&mut rest, half);
+        map(state, &mut pane.part(map_area));
+        let below = rest.height / 3;
+        let way = pane::cut_bottom(&mut rest, below);
+        scatter(state, &mut pane.part(rest));
+        climb::draw(state, &mut pane.part(way));
+    } else {
+        match state.figure {
+            Figure::Map => map(state, &mut pane.part(rest)),
+            Figure::Marks => scatter(state, &mut pane.part(rest)),
+            Figure::Climb => climb::draw(state, &mut pane.part(rest)),
+        }
+    }
+    if listed > 0 {
+        strongest(state, &mut pane.part(list));
+    }
+}
+
+/// True while the marks are not those of the parameters on the screen.
+fn stale(state: &State) -> bool {
+    state.stale(&state.answer.marks, Stage::Boost)
+}
+
+/// Figure 5.
+pub(super) fn map(state: &State, pane: &mut Pane<'_>) {
+    let marks = state.answer.marks.value.as_deref();
+    curves::heading(
+        pane,
+        0,
+        &format!("Figure 5: bands selected, {}", bands::unit(state.settings.normalisation)),
+        stale(state) && marks.is_some(),
+    );
+    let Some(marks) = marks else { return curves::nothing(state, pane, 1) };
+    let mut rest = pane.area();
+    pane::cut_top(&mut rest, 1);
+    let mut pane = pane.part(pane::inset(rest, 1));
+    bands::draw(state, marks, &mut pane);
+    if stale(state) {
+        pane.fade();
+    }
+}
+
+/// Figure 4.
+fn scatter(state: &State, pane: &mut Pane<'_>) {
+    let marks = state.answer.marks.value.as_deref();
+    curves::heading(pane, 0, "Figure 4: eigenvalues selected", stale(state) && marks.is_some());
+    let Some(marks) = marks else { return curves::nothing(state, pane, 1) };
+    let mut rest = pane.area();
+    pane::cut_top(&mut rest, 1);
+    let mut pane = pane.part(pane::inset(rest, 1));
+    scatter::draw(state, marks, &mut pane);
+    if stale(state) {
+        pane.fade();
+    }
+}
+
+/// The class's selected eigenvalues, the weightiest first.
+fn strongest(state: &State, pane: &mut Pane<'_>) {
+    let class = state.settings.class;
+    let (Some(name), Some(marks)) = (state.class(), state.answer.marks.value.as_deref().and_then(|m| m.get(class)))
+    else {
+        return;
+    };
+    let said =
+        format!("{} {}: {}, by weight α", class + 1, text::clean(name), number::count(marks.len(), "eigenvalue"));
+    pane.put(1, 0, &text::fit(&said, (pane.width() as usize).saturating_sub(2)), Role::Strong);
+    let mut order: Vec<&Mark> = marks.iter().collect();
+    order.sort_by(|a, b| b.alpha.total_cmp(&a.alpha));
+    let most = order.first().map_or(1.0, |mark| mark.alpha).max(f64::MIN_POSITIVE);
+    let rows = pane.height() as usize - 1;
+    let columns = (pane.width() as usize / COLUMN).max(1);
+    let scroll = state.scroll.min(order.len().saturating_sub(rows * columns));
+    for (place, mark) in order.into_iter().skip(scroll).take(rows * columns).enumerate() {
+        let x = (1 + place / rows * COLUMN) as u16;
+        let y = (1 + place % rows) as u16;
+        let (full, _) = footer::bar(mark.alpha / most, 5);
+        let index = text::right(&mark.index.to_string(), 4);
+        let alpha = text::right(&format!("{:.2}", mark.alpha), 6);
+        pane.spans(
+            x,
+            y,
+            [
+                (index.as_str(), Role::Strong),
+                (alpha.as_str(), Role::Plain),
+                (" ", Role::Plain),
+                (text::left(&full, 5).as_str(), Role::Train),
+                (" ", Role::Plain),
+                (number::short(mark.low).as_str(), Role::Plain),
+                ("–", Role::Faint),
+                (number::short(mark.high).as_str(), Role::Plain),
+            ],
+        );
+    }
+    if stale(state) {
+        pane.fade();
+    }
+}
+
+/// Columns of one eigenvalue in the list.
+const COLUMN: usize = 33;

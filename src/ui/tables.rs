@@ -1,0 +1,172 @@
+//! Tables 1 to 4, one below the other, or two by two where there is room.
+//!
+//! ```text
+//!  Table 1: Classification error ε with the first k eigenvalues
+//!                               ε on D,  ε on Q,
+//!  method   ε on D  k0  ε on Q   k = 10   k = 10
+//!  first-k   0.242   8   0.300    0.274    0.311
+//!
+//!  Table 2: …                                      PgDn ↓
+//! ```
+
+use ratatui::{layout::Rect, style::Modifier};
+
+use super::{
+    curves,
+    look::Role,
+    number,
+    pane::{self, Pane},
+    text,
+};
+use crate::{
+    query::Stage,
+    study::{Cell, Table},
+    workbench::State,
+};
+
+/// Columns between two columns of a table.
+const GAP: usize = 2;
+/// The least a column of words is cut to.
+const LEAST: usize = 6;
+
+/// The view.
+pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
+    let Some(tables) = &state.answer.tables.value else {
+        curves::heading(pane, 0, "Tables", false);
+        curves::nothing(state, pane, 1);
+        return;
+    };
+    let stale = state.stale(&state.answer.tables, Stage::Tables);
+    let across = if pane.width() >= 150 { 2 } else { 1 };
+    let width = pane.width() / across;
+    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(table, stale, width)).collect();
+    // In reading order, each line of tables as high as its highest.
+    let lines: Vec<(&[Sheet], u16)> = sheets
+        .chunks(across as usize)
+        .map(|line| (line, line.iter().map(|sheet| sheet.lines.len() as u16 + 1).max().unwrap_or(0)))
+        .collect();
+    let all = lines.iter().map(|(_, rows)| rows).sum::<u16>().saturating_sub(1);
+    // The last line says that there is more.
+    let room = if all > pane.height() { pane.height().saturating_sub(1) } else { pane.height() };
+    let scroll = (state.scroll.min(usize::from(u16::MAX)) as u16).min(all.saturating_sub(room));
+    let mut top = 0;
+    for (line, rows) in lines {
+        for (place, sheet) in (0..).zip(line) {
+            let mut area = pane.area();
+            pane::cut_left(&mut area, place * width);
+            area = Rect { width: area.width.min(width), height: area.height.min(room), ..area };
+            sheet.draw(&mut pane.part(area), i32::from(top) - i32::from(scroll));
+        }
+        top += rows;
+    }
+    let below = all.saturating_sub(scroll + room);
+    let (right, bottom) = (pane.width().saturating_sub(1), pane.height().saturating_sub(1));
+    if below > 0 {
+        pane.put_right(right, bottom, " PgDn ↓ ", Role::Chosen);
+    } else if scroll > 0 {
+        pane.put_right(right, bottom, " PgUp ↑ ", Role::Chosen);
+    }
+}
+
+/// What a line of a table is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Title,
+    Head,
+    /// The last line of heads.
+    Foot,
+    Row,
+}
+
+/// A table laid out for a width.
+struct Sheet {
+    lines: Vec<(Kind, Vec<String>)>,
+    widths: Vec<usize>,
+    numeric: Vec<bool>,
+    stale: bool,
+}
+
+impl Sheet {
+    fn new(table: &Table, stale: bool, width: u16) -> Self {
+        let room = (width as usize).saturating_sub(2);
+        let title = text::wrap(&tight(&format!("Table {}: {}", table.number, table.title)), room);
+        let columns: Vec<String> = table.columns.iter().map(|head| tight(head)).collect();
+        let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.iter().map(number::cell).collect()).collect();
+        let words = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
+        let widths = widths(&columns, &rows, room);
+        let heads: Vec<Vec<String>> =
+            columns.iter().zip(&widths).map(|(head, width)| text::wrap(head, *width)).collect();
+        let high = heads.iter().map(Vec::len).max().unwrap_or(0);
+        // Heads stand on their last line, as near to the figures as they can.
+        let head = |line: usize| {
+            let from_below = high - line;
+            let word = |head: &Vec<String>| {
+                head.len().checked_sub(from_below).and_then(|at| head.get(at)).cloned().unwrap_or_default()
+            };
+            (if from_below == 1 { Kind::Foot } else { Kind::Head }, heads.iter().map(word).collect())
+        };
+        let mut lines: Vec<(Kind, Vec<String>)> = title.into_iter().map(|line| (Kind::Title, vec![line])).collect();
+        lines.extend((0..high).map(head));
+        lines.extend(rows.into_iter().map(|row| (Kind::Row, row)));
+        Self { lines, widths, numeric: (0..columns.len()).map(|column| !words(column)).collect(), stale }
+    }
+
+    /// Draws it with its first line at `top`, which may lie above the pane.
+    fn draw(&self, pane: &mut Pane<'_>, top: i32) {
+        let titles = self.lines.iter().filter(|(kind, _)| *kind == Kind::Title).count();
+        for (line, (kind, cells)) in (0..).zip(&self.lines) {
+            let Some(y) = u16::try_from(top + line).ok().filter(|y| *y < pane.height()) else { continue };
+            if *kind == Kind::Title {
+                let last = line as usize + 1 == titles;
+                curves::heading(pane, y, cells.first().map_or("", String::as_str), self.stale && last);
+                continue;
+            }
+            self.cells(*kind, cells, y, pane);
+            if self.stale && *kind == Kind::Row {
+                let area = Rect { y: pane.area().y + y, height: 1, ..pane.area() };
+                pane.part(area).fade();
+            }
+        }
+    }
+
+    fn cells(&self, kind: Kind, cells: &[String], y: u16, pane: &mut Pane<'_>) {
+        let mut x = 1;
+        for ((cell, &wide), &numeric) in cells.iter().zip(&self.widths).zip(&self.numeric) {
+            let shown = if numeric { text::right(cell, wide) } else { text::left(cell, wide) };
+            let style = match kind {
+                Kind::Foot => pane.style(Role::Faint).add_modifier(Modifier::UNDERLINED),
+                Kind::Head => pane.style(Role::Faint),
+                _ if cell == number::NONE => pane.style(Role::Faint),
+                _ => pane.style(Role::Plain),
+            };
+            x = pane.styled(x, y, &shown, style) + GAP as u16;
+        }
+    }
+}
+
+/// `T = 20` as one word, which is not broken.
+fn tight(words: &str) -> String {
+    words.replace(" = ", "=")
+}
+
+/// Columns of each column: as wide as its widest cell and its head. When that is too much, heads are broken between
+/// words, the widest first; when that is not enough, cells are cut.
+fn widths(heads: &[String], rows: &[Vec<String>], room: usize) -> Vec<usize> {
+    let columns = heads.len();
+    let cells =
+        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| text::width(c)).max().unwrap_or(0);
+    let head = |column: usize| text::width(&text::clean(&heads[column]));
+    let word = |column: usize| heads[column].split_whitespace().map(text::width).max().unwrap_or(0);
+    let broken: Vec<usize> = (0..columns).map(|column| cells(column).max(word(column))).collect();
+    let cut: Vec<usize> = broken.iter().map(|&width| width.min(LEAST)).collect();
+    let mut widths: Vec<usize> = (0..columns).map(|column| cells(column).max(head(column))).collect();
+    let gaps = GAP * columns.saturating_sub(1);
+    for least in [&broken, &cut] {
+        while widths.iter().sum::<usize>() + gaps > room {
+            let widest = (0..columns).filter(|&c| widths[c] > least[c]).max_by_key(|&c| widths[c]);
+            let Some(column) = widest else { break };
+            widths[column] -= 1;
+        }
+    }
+    widths
+}

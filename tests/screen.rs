@@ -1,0 +1,264 @@
+//! The screen as literal text, at the sizes it is used at, and without a panic at all others.
+
+#[path = "screen/sample.rs"]
+mod sample;
+
+use std::time::{Duration, Instant};
+
+use eigenselect::{
+    query::{Answer, Parameter},
+    ui::{self, Look},
+    workbench::{Action, Figure, Filter, State, View, keymap, update},
+};
+use ratatui::{
+    Terminal,
+    backend::TestBackend,
+    buffer::Buffer,
+    style::{Color, Modifier},
+};
+use unicode_width::UnicodeWidthStr;
+
+const SMALL: (u16, u16) = (80, 24);
+const LARGE: (u16, u16) = (200, 60);
+
+fn buffer(state: &State, look: Look, (columns, rows): (u16, u16)) -> Buffer {
+    let mut terminal = Terminal::new(TestBackend::new(columns, rows)).unwrap();
+    terminal.draw(|frame| ui::render(state, look, frame)).unwrap();
+    terminal.backend().buffer().clone()
+}
+
+/// The characters of a buffer, line by line, without the cells that wide characters cover.
+fn text(buffer: &Buffer) -> String {
+    let mut text = String::new();
+    for row in 0..buffer.area.height {
+        let mut line = String::new();
+        let mut covered = 0;
+        for column in 0..buffer.area.width {
+            if covered > 0 {
+                covered -= 1;
+                continue;
+            }
+            let symbol = buffer[(column, row)].symbol();
+            line.push_str(symbol);
+            covered = symbol.width().saturating_sub(1);
+        }
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+fn drawn(state: &State, size: (u16, u16)) -> String {
+    text(&buffer(state, Look::default(), size))
+}
+
+fn shown(mut state: State, view: View) -> State {
+    update(&mut state, Action::Show(view));
+    state
+}
+
+fn compare(name: &str, screen: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("screen/snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, screen));
+}
+
+#[test]
+fn every_view_on_a_small_screen() {
+    for view in View::ALL {
+        compare(&format!("{}-80x24", view.name()), &drawn(&shown(sample::state(sample::full()), view), SMALL));
+    }
+}
+
+#[test]
+fn every_view_on_a_large_screen() {
+    for view in View::ALL {
+        compare(&format!("{}-200x60", view.name()), &drawn(&shown(sample::state(sample::full()), view), LARGE));
+    }
+}
+
+#[test]
+fn figure_4_on_a_small_screen() {
+    let mut state = shown(sample::state(sample::full()), View::Selection);
+    state.figure = Figure::Marks;
+    state.compared.extend([6, 12]);
+    compare("Figure4-80x24", &drawn(&state, SMALL));
+    state.figure = Figure::Climb;
+    compare("Climb-80x24", &drawn(&state, SMALL));
+}
+
+#[test]
+fn a_narrow_screen_has_its_parameters_in_a_strip() {
+    compare("Overview-60x18", &drawn(&sample::state(sample::full()), (60, 18)));
+    compare("Models-44x14", &drawn(&shown(sample::state(sample::full()), View::Models), (44, 14)));
+    compare("Tables-30x8", &drawn(&shown(sample::state(sample::full()), View::Tables), (30, 8)));
+    compare("too-small-20x5", &drawn(&sample::state(sample::full()), (20, 5)));
+}
+
+#[test]
+fn before_the_first_answer() {
+    for view in View::ALL {
+        compare(&format!("{}-empty", view.name()), &drawn(&shown(sample::state(Answer::default()), view), SMALL));
+    }
+}
+
+#[test]
+fn in_the_middle_of_a_cold_run() {
+    for view in [View::Overview, View::Pipeline, View::Models] {
+        let mut state = shown(sample::state(sample::partial()), view);
+        state.models.at = 209;
+        compare(&format!("{}-partial", view.name()), &drawn(&state, SMALL));
+    }
+}
+
+#[test]
+fn models_that_failed() {
+    let mut state = shown(sample::state(sample::full()), View::Models);
+    state.models.filter = Filter::Defects;
+    state.models.at = 3;
+    compare("Models-defects", &drawn(&state, SMALL));
+    state.models.at = 1;
+    compare("Models-out", &drawn(&state, SMALL));
+    compare("Overview-failed", &drawn(&sample::state(sample::failed()), SMALL));
+}
+
+#[test]
+fn names_cannot_do_anything_to_the_terminal() {
+    for view in View::ALL {
+        let buffer = buffer(&shown(sample::state(sample::hostile()), view), Look::default(), SMALL);
+        for cell in &buffer.content {
+            let bad = |c: char| c.is_control() || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}');
+            assert!(!cell.symbol().chars().any(bad), "{:?} in {}", cell.symbol(), view.name());
+        }
+    }
+    compare("Models-hostile", &drawn(&shown(sample::state(sample::hostile()), View::Models), SMALL));
+}
+
+#[test]
+fn plain_ascii() {
+    let look = Look { ascii: true, ..Look::default() };
+    for view in View::ALL {
+        let buffer = buffer(&shown(sample::state(sample::full()), view), look, SMALL);
+        assert!(text(&buffer).is_ascii(), "{}", view.name());
+    }
+    compare("Curves-ascii", &text(&buffer(&shown(sample::state(sample::full()), View::Curves), look, SMALL)));
+    compare("Selection-ascii", &text(&buffer(&shown(sample::state(sample::full()), View::Selection), look, SMALL)));
+}
+
+#[test]
+fn the_help_comes_from_the_keymap() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Help);
+    compare("help-80x24", &drawn(&state, SMALL));
+    let all = drawn(&state, LARGE);
+    for binding in keymap::bindings() {
+        assert!(all.contains(&binding.label) && all.contains(&binding.about), "{binding:?}");
+    }
+    update(&mut state, Action::Last);
+    assert!(drawn(&state, SMALL).contains("draw the screen anew"), "its end can be reached");
+}
+
+#[test]
+fn a_value_is_typed_in_the_footer() {
+    let mut state = sample::state(sample::full());
+    let footer = |state: &State| drawn(state, SMALL).lines().skip(22).map(str::to_owned).collect::<Vec<_>>();
+    for action in [Action::Edit, Action::Insert('2'), Action::Insert('0'), Action::Insert('0'), Action::Insert('1')] {
+        update(&mut state, action);
+    }
+    assert_eq!(footer(&state), [" T = 2001   1 – 1000", " Enter take it  Esc leave it"]);
+    update(&mut state, Action::Commit);
+    assert_eq!(footer(&state)[0], " T = 2001   × T takes a number from 1 to 1000");
+}
+
+#[test]
+fn what_is_stale_is_faint_and_says_so() {
+    let mut state = sample::state(sample::full());
+    let faint = |state: &State, word: &str| {
+        let buffer = buffer(state, Look::default(), SMALL);
+        let screen = text(&buffer);
+        let (row, line) = screen.lines().enumerate().find(|(_, line)| line.contains(word)).unwrap();
+        let column = line[..line.find(word).unwrap()].width();
+        buffer[(column as u16, row as u16)].modifier.contains(Modifier::DIM)
+    };
+    assert!(!faint(&state, "HCBw for ε") && !faint(&state, "AdaBoost T"));
+    update(&mut state, Action::Choose(Parameter::Distance));
+    update(&mut state, Action::Turn(1));
+    assert!(faint(&state, "HCBw for ε"), "a climb depends on the distance");
+    assert!(!faint(&state, "AdaBoost T"), "AdaBoost does not");
+    assert!(drawn(&state, SMALL).contains("◌ HCBw for ε"));
+}
+
+#[test]
+fn without_colour_nothing_is_coloured() {
+    let look = Look { colour: false, ascii: false };
+    for view in View::ALL {
+        let buffer = buffer(&shown(sample::state(sample::partial()), view), look, SMALL);
+        assert!(buffer.content.iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
+        assert!(buffer.content.iter().any(|cell| cell.modifier.contains(Modifier::REVERSED)), "what is chosen shows");
+    }
+}
+
+/// Every screen that the tests know, in every view, with everything that can be open above it.
+fn moods() -> Vec<State> {
+    let answers: [fn() -> Answer; 6] =
+        [Answer::default, sample::full, sample::partial, sample::failed, sample::hostile, sample::nonsense];
+    let mut moods = Vec::new();
+    for answer in answers {
+        for view in View::ALL {
+            let mut state = shown(sample::state(answer()), view);
+            state.compared.extend(0..30);
+            state.scroll = 1000;
+            state.models.at = 1000;
+            moods.push(state.clone());
+            state.figure = Figure::Marks;
+            state.logarithmic = false;
+            state.scroll = 3;
+            state.settings.class = 19;
+            state.settings.k = 5000;
+            moods.push(state);
+        }
+    }
+    let mut helped = sample::state(sample::full());
+    update(&mut helped, Action::Help);
+    let mut typing = sample::state(sample::full());
+    update(&mut typing, Action::Edit);
+    (0..40).for_each(|_| drop(update(&mut typing, Action::Insert('象'))));
+    let mut dead = sample::state(sample::hostile());
+    update(&mut dead, Action::Fatal("\u{1b}[2J the engine ".repeat(30)));
+    moods.extend([helped, typing, dead]);
+    moods
+}
+
+#[test]
+fn no_size_panics() {
+    for state in moods() {
+        for columns in [1, 2, 3, 7, 12, 23, 24, 25, 31, 40, 53, 66, 71, 72, 80, 99, 120] {
+            for rows in [1, 2, 3, 5, 6, 7, 8, 9, 11, 13, 14, 16, 17, 20, 24, 33, 50] {
+                buffer(&state, Look::default(), (columns, rows));
+            }
+        }
+        for size in [(300, 100), (300, 1), (1, 100), (120, 17), (200, 12)] {
+            buffer(&state, Look { ascii: true, colour: false }, size);
+        }
+    }
+}
+
+#[test]
+fn a_frame_takes_little_time() {
+    for view in View::ALL {
+        let state = shown(sample::state(sample::full()), view);
+        let mut terminal = Terminal::new(TestBackend::new(200, 60)).unwrap();
+        let quickest = (0..20)
+            .map(|_| {
+                let start = Instant::now();
+                terminal.draw(|frame| ui::render(&state, Look::default(), frame)).unwrap();
+                start.elapsed()
+            })
+            .min()
+            .unwrap();
+        // Aimed at 2 ms; the bound leaves room for a busy machine and for debug assertions.
+        assert!(quickest < Duration::from_millis(10), "{} took {quickest:?}", view.name());
+    }
+}
