@@ -5,6 +5,9 @@
 //!                   └────► canonical ─► hash, and everything that is computed
 //! ```
 
+pub mod synth;
+pub mod write;
+
 use std::fmt;
 
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,336 @@
+//! A closed triangle surface that can be re-meshed in place: corners, twins, and the three moves on an edge.
+//!
+//! Triangle f owns the half-edges 3f, 3f + 1, 3f + 2; each starts at `start` and has its `twin` in the neighbour.
+//! All moves keep the surface a closed oriented 2-manifold of the same genus: they refuse what would not.
+
+use super::polygonise::Surface;
+use super::vector::V3;
+
+/// Marks a removed half-edge or vertex.
+const GONE: u32 = u32::MAX;
+
+/// The surface and the positions of its vertices.
+#[derive(Debug, Clone)]
+pub struct HalfEdges {
+    pub points: Vec<V3>,
+    start: Vec<u32>,
+    twin: Vec<u32>,
+    /// A half-edge that starts at the vertex.
+    out: Vec<u32>,
+    live: usize,
+}
+
+/// The next half-edge in the triangle.
+pub const fn next(h: u32) -> u32 {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+/// The previous half-edge in the triangle.
+pub const fn prev(h: u32) -> u32 {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
+impl HalfEdges {
+    /// The connectivity of a closed oriented manifold surface; none when an edge lacks its other side.
+    pub fn new(surface: Surface) -> Option<Self> {
+        let start: Vec<u32> = surface.triangles.iter().flatten().copied().collect();
+        let mut out = vec![GONE; surface.points.len()];
+        let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(start.len());
+        for (h, &a) in (0_u32..).zip(&start) {
+            let b = start[next(h) as usize];
+            edges.push((a.min(b), a.max(b), h));
+            out[a as usize] = h;
+        }
+        edges.sort_unstable();
+        let mut twin = vec![GONE; start.len()];
+        for pair in edges.chunks(2) {
+            let &[(a, b, h), (c, d, t)] = pair else { return None };
+            if (a, b) != (c, d) || start[h as usize] == start[t as usize] {
+                return None;
+            }
+            twin[h as usize] = t;
+            twin[t as usize] = h;
+        }
+        let live = out.iter().filter(|&&h| h != GONE).count();
+        Some(Self { points: surface.points, start, twin, out, live })
+    }
+
+    /// The number of vertices left.
+    pub const fn vertex_count(&self) -> usize {
+        self.live
+    }
+
+    /// One more than the highest vertex index, removed ones included.
+    pub fn vertex_slots(&self) -> u32 {
+        self.out.len() as u32
+    }
+
+    /// One more than the highest half-edge index, removed ones included.
+    pub fn slots(&self) -> u32 {
+        self.start.len() as u32
+    }
+
+    pub fn has_vertex(&self, a: u32) -> bool {
+        self.out[a as usize] != GONE
+    }
+
+    pub fn has(&self, h: u32) -> bool {
+        self.start[h as usize] != GONE
+    }
+
+    pub fn start(&self, h: u32) -> u32 {
+        self.start[h as usize]
+    }
+
+    pub fn end(&self, h: u32) -> u32 {
+        self.start[next(h) as usize]
+    }
+
+    pub fn twin(&self, h: u32) -> u32 {
+        self.twin[h as usize]
+    }
+
+    /// The vertex across the edge, in the triangle of `h`.
+    pub fn apex(&self, h: u32) -> u32 {
+        self.start[prev(h) as usize]
+    }
+
+    pub fn point(&self, a: u32) -> V3 {
+        self.points[a as usize]
+    }
+
+    pub fn length(&self, h: u32) -> f64 {
+        (self.point(self.end(h)) - self.point(self.start(h))).norm()
+    }
+
+    /// The half-edges that start at `a`, in turn around it.
+    pub fn around(&self, a: u32) -> impl Iterator<Item = u32> {
+        let first = self.out[a as usize];
+        let mut at = (first != GONE).then_some(first);
+        std::iter::from_fn(move || {
+            let h = at?;
+            let after = self.twin[prev(h) as usize];
+            at = (after != first).then_some(after);
+            Some(h)
+        })
+    }
+
+    /// The neighbours of `a`.
+    pub fn neighbours(&self, a: u32) -> impl Iterator<Item = u32> {
+        self.around(a).map(|h| self.end(h))
+    }
+
+    pub fn degree(&self, a: u32) -> usize {
+        self.around(a).count()
+    }
+
+    /// The half-edges one per edge: those with the lower index.
+    pub fn is_edge(&self, h: u32) -> bool {
+        self.has(h) && h < self.twin(h)
+    }
+
+    /// The triangles left, as corners.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.start.as_chunks::<3>().0.iter().copied().filter(|t| t[0] != GONE)
+    }
+
+    fn join(&mut self, h: u32, t: u32) {
+        self.twin[h as usize] = t;
+        self.twin[t as usize] = h;
+    }
+
+    /// Puts a vertex at `at` on the edge of `h`, and gives its index.
+    pub fn split(&mut self, h: u32, at: V3) -> u32 {
+        let t = self.twin(h);
+        let (b, c, d) = (self.end(h), self.apex(h), self.apex(t));
+        let m = self.points.len() as u32;
+        self.points.push(at);
+        self.live += 1;
+        let (bc, ad) = (next(h), next(t));
+        let (beyond_bc, beyond_ad) = (self.twin(bc), self.twin(ad));
+        // h's triangle (a b c) becomes (a m c) and a new (m b c); t's (b a d) becomes (b m d) and a new (m a d).
+        let a = self.start(h);
+        let f = self.start.len() as u32;
+        let g = f + 3;
+        self.start.extend([m, b, c, m, a, d]);
+        self.twin.extend([GONE; 6]);
+        self.start[next(h) as usize] = m;
+        self.start[next(t) as usize] = m;
+        self.join(h, g);
+        self.join(t, f);
+        self.join(bc, f + 2);
+        self.join(ad, g + 2);
+        self.join(f + 1, beyond_bc);
+        self.join(g + 1, beyond_ad);
+        self.out.push(f);
+        self.out[a as usize] = h;
+        self.out[b as usize] = t;
+        self.out[c as usize] = f + 2;
+        self.out[d as usize] = g + 2;
+        m
+    }
+
+    /// Whether [`HalfEdges::flip`] keeps the surface a manifold with no vertex of fewer than four neighbours.
+    pub fn can_flip(&self, h: u32) -> bool {
+        let t = self.twin(h);
+        let (c, d) = (self.apex(h), self.apex(t));
+        c != d
+            && self.degree(self.start(h)) > 4
+            && self.degree(self.end(h)) > 4
+            && self.neighbours(c).all(|other| other != d)
+    }
+
+    /// Replaces the edge by the other diagonal of its two triangles; `h` and its twin are no longer that edge.
+    pub fn flip(&mut self, h: u32) {
+        let t = self.twin(h);
+        let (bc, ca, ad, db) = (next(h), prev(h), next(t), prev(t));
+        let (a, b, c, d) = (self.start(h), self.start(t), self.start(ca), self.start(db));
+        let (beyond_bc, beyond_ad) = (self.twin(bc), self.twin(ad));
+        // (a b c), (b a d) → (a d c), (b c d).
+        self.start[bc as usize] = d;
+        self.start[ad as usize] = c;
+        self.join(h, beyond_ad);
+        self.join(t, beyond_bc);
+        self.join(bc, ad);
+        self.out[a as usize] = h;
+        self.out[b as usize] = t;
+        self.out[c as usize] = ca;
+        self.out[d as usize] = db;
+    }
+
+    /// Whether the ends of the edge have no common neighbour but the two across it, so that the surface stays a
+    /// manifold when they become one vertex; and none of the two across falls below four neighbours.
+    pub fn can_collapse(&self, h: u32) -> bool {
+        let (a, b) = (self.start(h), self.end(h));
+        let (c, d) = (self.apex(h), self.apex(self.twin(h)));
+        let common = self.neighbours(a).filter(|&x| self.neighbours(b).any(|y| y == x)).count();
+        common == 2
+            && c != d
+            && self.degree(c) > 4
+            && self.degree(d) > 4
+            && self.degree(a) + self.degree(b) >= 8
+            && self.live > 8
+    }
+
+    /// Makes the edge's start one with its end, which moves to `at`.
+    pub fn collapse(&mut self, h: u32, at: V3) {
+        let t = self.twin(h);
+        let (a, b) = (self.start(h), self.end(h));
+        let (c, d) = (self.apex(h), self.apex(t));
+        let spokes: Vec<u32> = self.around(a).collect();
+        for spoke in spokes {
+            self.start[spoke as usize] = b;
+        }
+        let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(t)), self.twin(prev(t)));
+        self.join(bc, ca);
+        self.join(ad, db);
+        for gone in [h, next(h), prev(h), t, next(t), prev(t)] {
+            self.start[gone as usize] = GONE;
+        }
+        // Of each joined pair, the one that starts where it is named.
+        for (vertex, pair) in [(b, ca), (c, bc), (d, ad)] {
+            self.out[vertex as usize] = if self.start(pair) == vertex { pair } else { self.twin(pair) };
+        }
+        self.out[a as usize] = GONE;
+        self.points[b as usize] = at;
+        self.live -= 1;
+    }
+
+    /// The surface without what was removed, its vertices in their order.
+    pub fn surface(&self) -> Surface {
+        let mut renamed = vec![GONE; self.out.len()];
+        let mut points = Vec::with_capacity(self.live);
+        for a in 0..self.vertex_slots() {
+            if self.has_vertex(a) {
+                renamed[a as usize] = points.len() as u32;
+                points.push(self.point(a));
+            }
+        }
+        Surface { points, triangles: self.triangles().map(|t| t.map(|a| renamed[a as usize])).collect() }
+    }
+
+    /// Number of components and sum of their genera.
+    pub fn topology(&self) -> (usize, i64) {
+        let mut seen = vec![false; self.out.len()];
+        let (mut components, mut half_edges) = (0, 0_i64);
+        for first in 0..self.vertex_slots() {
+            if !self.has_vertex(first) || std::mem::replace(&mut seen[first as usize], true) {
+                continue;
+            }
+            components += 1;
+            let mut open = vec![first];
+            while let Some(a) = open.pop() {
+                for b in self.neighbours(a) {
+                    half_edges += 1;
+                    if !std::mem::replace(&mut seen[b as usize], true) {
+                        open.push(b);
+                    }
+                }
+            }
+        }
+        // V − E + F = 2 (components − genus), and 3 F = 2 E.
+        let euler = self.live as i64 - half_edges / 6;
+        (components, components as i64 - euler / 2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::polygonise::polygonise;
+    use super::super::primitive::Primitive;
+    use super::super::vector::{Frame, v};
+    use super::*;
+
+    fn ring() -> HalfEdges {
+        HalfEdges::new(polygonise(&Primitive::ring(Frame::at(v(0.0, 0.0, 0.0)), 1.0, 0.4).into(), 0.2)).unwrap()
+    }
+
+    /// Every twin is mutual and opposite, every fan closes and holds all of the vertex's half-edges.
+    fn assert_sound(mesh: &HalfEdges) {
+        let mut fans = vec![0; mesh.vertex_slots() as usize];
+        for h in (0..mesh.slots()).filter(|&h| mesh.has(h)) {
+            let t = mesh.twin(h);
+            assert_eq!(mesh.twin(t), h);
+            assert_eq!((mesh.start(t), mesh.end(t)), (mesh.end(h), mesh.start(h)));
+            assert!(mesh.has_vertex(mesh.start(h)));
+            fans[mesh.start(h) as usize] += 1;
+        }
+        for a in (0..mesh.vertex_slots()).filter(|&a| mesh.has_vertex(a)) {
+            assert!(mesh.around(a).all(|h| mesh.start(h) == a));
+            assert_eq!(mesh.degree(a), fans[a as usize]);
+        }
+    }
+
+    #[test]
+    fn random_moves_keep_a_torus() {
+        let mut mesh = ring();
+        let mut random = super::super::random::Random::new(3, "ring", 0, 0, "moves");
+        for round in 0..4000 {
+            let h = random.below(mesh.slots() as usize) as u32;
+            if !mesh.has(h) {
+                continue;
+            }
+            let middle = mesh.point(mesh.start(h)).lerp(mesh.point(mesh.end(h)), 0.5);
+            match random.below(4) {
+                0 if round < 2000 => {
+                    mesh.split(h, middle);
+                }
+                1 if mesh.can_flip(h) => mesh.flip(h),
+                _ if mesh.can_collapse(h) => mesh.collapse(h, middle),
+                _ => {}
+            }
+        }
+        assert_sound(&mesh);
+        assert_eq!(mesh.topology(), (1, 1));
+        assert!(mesh.vertex_count() < ring().vertex_count());
+        let again = HalfEdges::new(mesh.surface()).unwrap();
+        assert_sound(&again);
+        assert_eq!(again.topology(), (1, 1));
+    }
+
+    #[test]
+    fn open_surfaces_are_refused() {
+        let surface = Surface { points: vec![V3::default(); 3], triangles: vec![[0, 1, 2]] };
+        assert!(HalfEdges::new(surface).is_none());
+    }
+}
