@@ -12,7 +12,7 @@
 //! ```
 //!
 //! Narrow screens have the parameters in a strip above the view. Whatever the size, nothing is drawn outside of the
-//! frame and nothing panics: everything goes through [`Pane`], which clips.
+//! frame and nothing panics: everything goes through `Pane`, which clips.
 //!
 //! Colours are the terminal's own sixteen, and none of them carries a meaning alone: there is always a mark, a word or
 //! an attribute beside it ([`Look`]).

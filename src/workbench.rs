@@ -6,8 +6,8 @@
 //! worker ─► Update ─────────────┘
 //! ```
 //!
-//! [`update`] is the only place where the state changes, and it never waits: a parameter shows its new value at once,
-//! and what depends on it counts as stale ([`State::awaits`]) until an answer with these parameters arrives.
+//! [`update()`] is the only place where the state changes, and it never waits: a parameter shows its new value at
+//! once, and what depends on it counts as stale ([`State::awaits`]) until an answer with these parameters arrives.
 
 pub use self::{
     action::{Action, Effect, Leave},

@@ -139,8 +139,8 @@ fn by_hand() -> Sample {
 #[test]
 fn first_k_by_hand() {
     let FirstK { error, adr, best_error, best_adr } = first_k(&by_hand(), Distance::L1, &Unwatched).unwrap();
-    // k = 1. Models 0 to 4 lie together, so the lowest of the others is nearest: 1, 0, 0, 0, 0; for 5 it is 0. The three
-    // of class 1 are wrong. Q = 2, and the first two found are 1 2, 0 2, 0 1, then 0 1 for all of class 1.
+    // k = 1. Models 0 to 4 lie together, so the lowest of the others is nearest: 1, 0, 0, 0, 0; for 5 it is 0. The
+    // three of class 1 are wrong. Q = 2, and the first two found are 1 2, 0 2, 0 1, then 0 1 for all of class 1.
     // k = 2. Nearest: 0 → 1, 1 → 0, 2 → 3 (wrong), 3 → 2 (wrong), 4 → 3, 5 → 3 (at 10, as is 4).
     assert_eq!(error.train, [0.5, 2.0 / 6.0]);
     // First two at k = 2: 0: 1 2 → 1. 1: 0 2 → 1. 2: 3 4 (1 and 3) → 0. 3: 2 4 → (0 + 1/2)/2. 4: 3 2 → (1 + 1/2)/2.
@@ -156,8 +156,8 @@ fn first_k_by_hand() {
 #[test]
 fn hill_climbing_by_hand() {
     let climb = climb(&by_hand(), Distance::L1, Cost::Error, &Unwatched).unwrap();
-    // The second feature alone: 0 → 1, 1 → 0, 2 → 3 (wrong), 3 → 2 (wrong; 5 is as near, but comes later), 4 → 5, 5 → 3:
-    // two wrong. The first alone has three wrong. Both together have two, which is no lower.
+    // The second feature alone: 0 → 1, 1 → 0, 2 → 3 (wrong), 3 → 2 (wrong; 5 is as near, but comes later), 4 → 5,
+    // 5 → 3: two wrong. The first alone has three wrong. Both together have two, which is no lower.
     assert_eq!(climb.selected, [2]);
     assert_eq!(climb.steps.len(), 1);
     let climbed = climbed(&by_hand(), Distance::L1, &climb);

@@ -141,7 +141,8 @@ pub struct ModelRow {
     pub size: Option<(usize, usize)>,
     /// What is wrong with the mesh, one line each, each with its place; and what was done about it.
     pub defects: Arc<Vec<String>>,
-    /// Total mass 1ᵀB1 (area for FEM, number of vertices for cot), once its spectrum is there: Weyl's line is 4πk/measure.
+    /// Total mass 1ᵀB1 (area for FEM, number of vertices for cot), once its spectrum is there: Weyl's line is
+    /// 4πk/measure.
     pub measure: Option<f64>,
     /// The eigenvalues (ascending, as solved, without normalisation), once they are there.
     pub eigenvalues: Option<Arc<Vec<f64>>>,

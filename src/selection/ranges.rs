@@ -4,8 +4,8 @@ use crate::metrics::Sample;
 
 /// For every class, the range of its training models' values at every eigenvalue.
 ///
-/// The paper's weak classifier (section 3.3) says +1 when the greatest |`λ_k(M)` − `λ_k(R)|` over the positives R is at most
-/// the greatest such difference among the positives: when `λ_k(M)` lies within their range.
+/// The paper's weak classifier (section 3.3) says +1 when the greatest |`λ_k(M)` − `λ_k(R)|` over the positives R is at
+/// most the greatest such difference among the positives: when `λ_k(M)` lies within their range.
 pub(crate) struct Ranges {
     cols: usize,
     low: Vec<f64>,

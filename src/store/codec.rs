@@ -1,4 +1,4 @@
-//! Value ↔ payload. The only file that knows the encoding (bincode 2, through serde), so that another can take its place.
+//! Value ↔ payload. The only file that knows the encoding (bincode 2, through serde), so that another can take over.
 //!
 //! Integers have a fixed width: then no value claims more bytes while it is read than it has in the payload, and every
 //! payload up to [`LIMIT`] that was written can be read.

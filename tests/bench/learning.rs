@@ -1,7 +1,7 @@
 //! How long selection and metrics take: `cargo bench --bench learning [-- FEATURES.csv]`.
 //!
-//! On a seeded synthetic sample of the size of SHREC 2007 (285 training models of 19 classes, 95 queries, 500 features),
-//! and on a CSV file `model,class,role,f1,f2,…` when one is given.
+//! On a seeded synthetic sample of the size of SHREC 2007 (285 training models of 19 classes, 95 queries, 500
+//! features), and on a CSV file `model,class,role,f1,f2,…` when one is given.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 

@@ -46,7 +46,8 @@ pub fn imports(source: &str, depth: usize) -> Vec<Import> {
             root = Some(i + 2);
         } else if word(i, "super") || word(i, "self") && colons(i + 1) && word(i + 2, "super") {
             let first = if word(i, "self") { i + 2 } else { i };
-            let supers = (0..tokens.len()).take_while(|n| word(first + 2 * n, "super") && colons(first + 2 * n + 1)).count();
+            let supers =
+                (0..tokens.len()).take_while(|n| word(first + 2 * n, "super") && colons(first + 2 * n + 1)).count();
             if supers == depth + inline.len() {
                 root = Some(first + 2 * supers);
             }

@@ -1,3 +1,5 @@
+//! Every key does what its help says.
+
 use std::{collections::HashSet, mem};
 
 use super::*;

@@ -1,3 +1,5 @@
+//! What each action does to the state, and what it asks of the engine.
+
 use std::path::PathBuf;
 
 use super::*;
