@@ -59,8 +59,8 @@ impl Mesh {
     /// blake3 of the canonical form: equal for the same shape in another vertex order, face order or file format.
     ///
     /// A format that holds f32 (binary PLY and STL) is read as the shortest decimals of its values (see
-    /// [`super::read()`]), so a binary file written from a text file of up to six significant digits has the text file's
-    /// hash.
+    /// [`super::read()`]), so a binary file written from a text file of up to six significant digits has the text
+    /// file's hash.
     #[must_use]
     pub fn hash(&self) -> GeometryHash {
         let mesh = self.canonical();

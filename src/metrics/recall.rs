@@ -2,8 +2,8 @@
 //!
 //! ADR = (1/Q) Σ_{i=1..Q} `r_i`/i, where `r_i` of the first i retrieved are relevant. A relevant model at rank p ≤ Q
 //! adds 1/i to every i from p to Q, so that ADR is a sum of weights `w_Q(p)` = (1/Q) Σ_{i=p..Q} 1/i over the relevant
-//! models among the first Q. In units of one over a common multiple of all denominators the weights are integers: sums do
-//! not depend on their order, and equal figures are equal.
+//! models among the first Q. In units of one over a common multiple of all denominators the weights are integers: sums
+//! do not depend on their order, and equal figures are equal.
 
 /// Greatest scale. Sums over 2³² models stay within 128 bits.
 const SCALE_MAX: u128 = 1 << 96;
