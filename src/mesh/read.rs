@@ -137,6 +137,19 @@ pub enum ReadError {
         /// 1 in OBJ, 0 elsewhere.
         base: u8,
     },
+    /// A polygon has more corners than can be cut into triangles in useful time.
+    #[error(
+        "face {face} (counted from {base}) has {corners} corners; up to {} can be cut into triangles",
+        faces::MOST_CORNERS
+    )]
+    TooManyCorners {
+        /// Which face, counted from `base`.
+        face: usize,
+        /// How many corners it has.
+        corners: u32,
+        /// 1 in OBJ, 0 elsewhere.
+        base: u8,
+    },
     /// The file ends too early.
     #[error("the file ends in {inside}, {place}: {expected}")]
     Truncated {

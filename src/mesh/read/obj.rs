@@ -2,7 +2,7 @@
 //!
 //! `tobj` sees positions and faces alone, as one object without a name, a material, texture coordinates or normals:
 //! - groups, objects and materials would become meshes with vertices of their own, cut apart where they touch;
-//! - a wrong texture coordinate, a colour of four numbers or an absent material file would end the reading;
+//! - a wrong texture coordinate, a colour of four numbers, a weight of 0 or an absent material file would end the reading;
 //! - a polyline would become a face.
 //!
 //! `tobj` also numbers vertices in the order in which faces name them and leaves out the others. A first polygon that
@@ -55,7 +55,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
             rest = others;
         }
     }
-    Ok(faces.into_mesh(positions))
+    faces.into_mesh(positions, 1)
 }
 
 /// How many corners the first polygon has: at least three, for fewer would be a point or a line.
@@ -72,7 +72,6 @@ fn explain(bytes: &[u8], feed: &Feed<'_>, error: LoadError, vertices: usize) -> 
     }
     let defect = match error {
         LoadError::PositionParseError => "a vertex needs three numbers",
-        LoadError::ScalingByZeroError => "a vertex has weight 0",
         LoadError::FaceParseError => "a face needs whole numbers",
         _ => "it cannot be read",
     };
@@ -202,17 +201,8 @@ impl<'a> Feed<'a> {
         self.at = 0;
         self.number = line.number;
         let mut words = line.text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        let keep = match line.kind {
-            // A fourth number alone is the weight of a homogeneous position; four or more are a colour.
-            Kind::Vertex => {
-                if words.clone().count() == 5 {
-                    5
-                } else {
-                    4
-                }
-            }
-            Kind::Face => usize::MAX,
-        };
+        // After a position come a weight, which only curves know, or a colour.
+        let keep = if line.kind == Kind::Vertex { 4 } else { usize::MAX };
         let mut first = true;
         for word in words.by_ref().take(keep) {
             if !first {

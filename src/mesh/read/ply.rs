@@ -21,7 +21,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ReadError> {
         Encoding::Ascii => ascii::read(text, &header, &mut parts)?,
         Encoding::Binary { big } => binary::read(bytes, bytes.len() - text.left(), big, &header, &mut parts)?,
     }
-    Ok(parts.faces.into_mesh(parts.vertices))
+    parts.faces.into_mesh(parts.vertices, 0)
 }
 
 fn refuse(defect: impl Into<String>) -> ReadError {

@@ -51,20 +51,22 @@ fn is_text(bytes: &[u8]) -> bool {
 }
 
 /// Numbers positions in the order in which they first come; those that are equal share a number.
-#[derive(Default)]
-struct Weld {
-    numbers: HashMap<[u64; 3], u32>,
+struct Weld<const BYTES: usize> {
+    numbers: HashMap<[[u8; BYTES]; 3], u32>,
     vertices: Vec<[f64; 3]>,
 }
 
-impl Weld {
-    fn vertex(&mut self, position: [f64; 3]) -> u32 {
-        // −0 equals 0.
-        let position = position.map(|coordinate| coordinate + 0.0);
+impl<const BYTES: usize> Weld<BYTES> {
+    fn new() -> Self {
+        Self { numbers: HashMap::new(), vertices: Vec::new() }
+    }
+
+    /// The number of a position that is equal to others of the same key.
+    fn vertex(&mut self, key: [[u8; BYTES]; 3], position: impl FnOnce() -> [f64; 3]) -> u32 {
         let next = self.vertices.len() as u32;
-        let number = *self.numbers.entry(position.map(f64::to_bits)).or_insert(next);
+        let number = *self.numbers.entry(key).or_insert(next);
         if number == next {
-            self.vertices.push(position);
+            self.vertices.push(position());
         }
         number
     }
@@ -80,7 +82,7 @@ fn read_binary(bytes: &[u8], announced: usize) -> Result<Mesh, ReadError> {
             expected: format!("{announced} triangles were announced"),
         });
     }
-    let mut weld = Weld::default();
+    let mut weld = Weld::new();
     let mut faces = Faces::default();
     faces.reserve(announced);
     for triangle in 0..announced {
@@ -101,35 +103,39 @@ fn read_binary(bytes: &[u8], announced: usize) -> Result<Mesh, ReadError> {
             if let Some(value) = position.iter().find(|value| !value.is_finite()) {
                 return Err(not_finite(triangle, Place::Byte(at), f64::from(*value)));
             }
-            *corner = weld.vertex(position.map(widen));
+            // Adding 0 makes −0 equal to 0.
+            *corner = weld.vertex(position.map(|value| (value + 0.0).to_bits().to_le_bytes()), || position.map(widen));
         }
         faces.push(&corners);
     }
-    Ok(faces.into_mesh(weld.vertices))
+    faces.into_mesh(weld.vertices, 0)
 }
 
 fn read_text(mut text: Text<'_>) -> Result<Mesh, ReadError> {
-    let mut weld = Weld::default();
+    let mut weld = Weld::new();
     let mut faces = Faces::default();
     let mut polygon = Vec::new();
-    // Inside a solid, a facet or a loop.
-    let mut inside: Option<&'static str> = None;
+    let mut solid = false;
     let mut facet = false;
     while let Some(word) = text.word() {
         match word.to_ascii_lowercase().as_slice() {
             b"solid" => {
-                inside = Some("a solid");
+                solid = true;
                 text.rest_of_line();
             }
             b"endsolid" if !facet => {
-                inside = None;
+                solid = false;
                 text.rest_of_line();
             }
             b"facet" if !facet => {
                 facet = true;
-                // The normal follows, often wrong and sometimes nan: the corners' order says as much.
-                for _ in 0..4 {
-                    text.word();
+                // A normal may follow, often wrong and sometimes nan: the corners' order says as much.
+                let mut after = text;
+                if after.word().is_some_and(|word| word.eq_ignore_ascii_case(b"normal")) {
+                    text = after;
+                    for _ in 0..3 {
+                        text.word();
+                    }
                 }
             }
             b"outer" if facet => {
@@ -149,7 +155,8 @@ fn read_text(mut text: Text<'_>) -> Result<Mesh, ReadError> {
                 if let Some(value) = position.into_iter().find(|value| !value.is_finite()) {
                     return Err(not_finite(faces.len(), Place::Line(line), value));
                 }
-                polygon.push(weld.vertex(position));
+                let key = position.map(|value| (value + 0.0).to_bits().to_le_bytes());
+                polygon.push(weld.vertex(key, || position));
             }
             b"endloop" if facet => {
                 if polygon.len() < 3 {
@@ -168,7 +175,7 @@ fn read_text(mut text: Text<'_>) -> Result<Mesh, ReadError> {
             }
         }
     }
-    if inside.is_some() { Err(truncated(&text, &faces)) } else { Ok(faces.into_mesh(weld.vertices)) }
+    if solid { Err(truncated(&text, &faces)) } else { faces.into_mesh(weld.vertices, 0) }
 }
 
 fn malformed(line: usize, faces: &Faces, defect: &str) -> ReadError {

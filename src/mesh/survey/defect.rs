@@ -103,8 +103,8 @@ impl fmt::Display for Defect {
             DefectKind::DuplicateFace => write!(f, "{count} duplicate face{plural}")?,
             DefectKind::NonManifoldEdge => write!(f, "{count} non-manifold edge{plural} (more than two faces)")?,
             DefectKind::NonManifoldVertex => {
-                let (word, touch) = if count == 1 { ("vertex", "touches") } else { ("vertices", "touch") };
-                write!(f, "{count} non-manifold {word} (surface {touch} itself)")?;
+                let word = if count == 1 { "vertex" } else { "vertices" };
+                write!(f, "{count} non-manifold {word} (where the surface touches itself)")?;
             }
             DefectKind::Inconsistent => {
                 write!(f, "inconsistent orientation: {count} edge{plural} between faces that face opposite ways")?;

@@ -24,7 +24,7 @@ pub(super) fn read(bytes: &[u8], start: usize, header: Header) -> Result<Mesh, R
     let mut parts = Parts::new(counts, bytes.left());
     vertices(&mut bytes, header, counts, &mut parts)?;
     faces(&mut bytes, counts, &mut parts)?;
-    Ok(parts.faces.into_mesh(parts.vertices))
+    parts.faces.into_mesh(parts.vertices, 0)
 }
 
 fn vertices(bytes: &mut Bytes<'_>, header: Header, counts: Counts, parts: &mut Parts) -> Result<(), ReadError> {

@@ -25,7 +25,7 @@ pub(super) fn read(text: Text<'_>, header: Header, layout: Layout) -> Result<Mes
     if layout == Layout::Stream && reader.text.word().is_some() {
         return Err(malformed(reader.text.line(), "more numbers than announced"));
     }
-    Ok(parts.faces.into_mesh(parts.vertices))
+    parts.faces.into_mesh(parts.vertices, 0)
 }
 
 struct Reader<'a> {
