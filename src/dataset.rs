@@ -2,7 +2,7 @@
 //!
 //! | layout | classes | split |
 //! |---|---|---|
-//! | Princeton `.cla`: `train.cla` and `query.cla` (or `test.cla`) in the folder, or named by [`Options`] | the files' | the files' |
+//! | Princeton: `train.cla` and `query.cla` (or `test.cla`) in the folder, or by [`Options`] | the files' | the files' |
 //! | `DIR/train/<class>/…`, `DIR/query/<class>/…` (or `test`) | folders | folders |
 //! | `DIR/<class>/train/…`, `DIR/<class>/query/…` (or `test`) | folders | folders |
 //! | `DIR/<class>/…` | folders | the first three quarters of each class train |
@@ -99,7 +99,7 @@ pub enum DataSetError {
     NoTrainingFile(PathBuf),
     /// Meshes lie in the folder itself, so nothing says of which class they are.
     #[error(
-        "{}: {count} meshes ({example}, …) lie in the folder itself, so their classes are not known. Make it\n{LAYOUTS}",
+        "{}: meshes lie in the folder itself ({count}: {example}, …), so their classes are unknown. Make it\n{LAYOUTS}",
         root.display()
     )]
     Unsorted {

@@ -20,12 +20,23 @@ pub(super) fn open(root: &Path) -> Result<Found, DataSetError> {
     } else {
         found.classes_of_splits(root, &top);
     }
-    if found.files.is_empty() && !top.meshes.is_empty() {
-        let example = name::joined(Path::new(top.meshes[0].file_name().unwrap_or_default()));
-        return Err(DataSetError::Unsorted { root: root.to_owned(), count: top.meshes.len(), example });
+    if found.files.is_empty() {
+        unsorted(root, &top)?;
+        for (side, _) in &split {
+            // A folder that cannot be read has its warning, and none of what is looked for.
+            let Ok(folder) = Folder::read(side, &mut found.warnings) else { continue };
+            unsorted(side, &folder)?;
+        }
     }
     found.pass_over(root, &top.meshes, "lies in no class folder");
     Ok(found)
+}
+
+/// Refuses a folder that holds meshes itself where it should hold classes.
+fn unsorted(path: &Path, folder: &Folder) -> Result<(), DataSetError> {
+    let Some(first) = folder.meshes.first() else { return Ok(()) };
+    let example = name::text(first.file_name().unwrap_or_default());
+    Err(DataSetError::Unsorted { root: path.to_owned(), count: folder.meshes.len(), example })
 }
 
 /// The side of the split that a folder's name says.
@@ -151,7 +162,7 @@ impl Found {
         let name = name::joined(first.strip_prefix(root).unwrap_or(first));
         let others = match meshes.len() - 1 {
             0 => String::new(),
-            others => format!(", and so do {others} more"),
+            others => format!(", and {others} more like it"),
         };
         self.warnings.push(format!("{name}: passed over, for it {why}{others}"));
     }

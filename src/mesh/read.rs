@@ -2,7 +2,7 @@
 //!
 //! | format | what is read | how |
 //! |---|---|---|
-//! | OBJ | `v`, `f` (also `v/vt/vn`, negative indices, continued lines); groups and objects are one mesh | `tobj` behind a filter of lines |
+//! | OBJ | `v`, `f` (also `v/vt/vn`, negative indices, continued lines); groups are one mesh | `tobj`, lines filtered |
 //! | OFF | `[ST][C][N][4][n]OFF`, text and `BINARY`, with the header's parts missing as they are in the wild | own |
 //! | PLY | ASCII, binary in both byte orders, any properties and elements, `tristrips` | own |
 //! | STL | ASCII and binary, vertices joined where they are exactly equal | own |

@@ -48,8 +48,8 @@ impl Faces {
         self.close(polygon.len() as u32);
     }
 
-    /// The mesh of these polygons, which the format counts from `base`. Every corner must be one of `vertices`, and every
-    /// position finite.
+    /// The mesh of these polygons, which the format counts from `base`. Every corner must be one of `vertices`, and
+    /// every position finite.
     ///
     /// # Errors
     /// [`ReadError::TooManyCorners`].

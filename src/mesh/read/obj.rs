@@ -2,7 +2,7 @@
 //!
 //! `tobj` sees positions and faces alone, as one object without a name, a material, texture coordinates or normals:
 //! - groups, objects and materials would become meshes with vertices of their own, cut apart where they touch;
-//! - a wrong texture coordinate, a colour of four numbers, a weight of 0 or an absent material file would end the reading;
+//! - a wrong texture coordinate, a colour of four numbers, a weight of 0 or an absent material file would be an error;
 //! - a polyline would become a face.
 //!
 //! `tobj` also numbers vertices in the order in which faces name them and leaves out the others. A first polygon that

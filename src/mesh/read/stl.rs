@@ -42,9 +42,9 @@ fn is_text(bytes: &[u8]) -> bool {
         return false;
     }
     while text.next_line() {
-        match text.word_on_line() {
-            None => {}
-            Some(word) => return word.eq_ignore_ascii_case(b"facet") || word.eq_ignore_ascii_case(b"endsolid"),
+        let word = text.word_on_line().unwrap_or_default();
+        if word.eq_ignore_ascii_case(b"facet") || word.eq_ignore_ascii_case(b"endsolid") {
+            return true;
         }
     }
     bytes.is_ascii()

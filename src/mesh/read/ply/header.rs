@@ -238,10 +238,11 @@ mod tests {
 
     #[test]
     fn a_header_with_everything() {
-        let header = of("ply\r\nformat binary_big_endian 1.0\r\ncomment x\r\nelement vertex 2\r\nproperty uchar red\r\n\
+        let header =
+            of("ply\r\nformat binary_big_endian 1.0\r\ncomment x\r\nelement vertex 2\r\nproperty uchar red\r\n\
              property double z\r\nproperty float32 y\r\nproperty int16 x\r\nobj_info x\r\nelement junk 4000000000\r\n\
-             element face 1\r\nproperty list uchar int vertex_index\r\nproperty list uint8 float32 uv\r\nend_header\r\n")
-        .unwrap();
+             element face 1\r\nproperty list uchar int vertex_index\r\nproperty list uint8 float uv\r\nend_header\r\n")
+            .unwrap();
         assert_eq!(header.encoding, Encoding::Binary { big: true });
         let [vertex, junk, face] = &header.elements[..] else { panic!() };
         assert_eq!((vertex.role, vertex.count, vertex.stride()), (Role::Vertex, 2, Some(15)));
