@@ -59,9 +59,9 @@ impl<'a> Bytes<'a> {
 /// The f64 of an f32's shortest decimal.
 pub(super) fn widen(value: f32) -> f64 {
     let wide = f64::from(value);
-    // Most of what programs write has up to nine decimals and is below 2²³ in units of the last. There the product is
-    // exact (24 bits of the value, 21 of 5⁹), at most one such decimal lies nearer to this f32 than to others, and it is
-    // too far from the middle between two of them for the f64 in between to matter.
+    // Most of what programs write has up to nine decimals and is below 2²³ in units of the last. There the product
+    // is exact (24 bits of the value, 21 of 5⁹), at most one such decimal lies nearer to this f32 than to others, and
+    // it is too far from the middle between two of them for the f64 in between to matter.
     for power in [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9] {
         let whole = (wide * power).round();
         if whole.abs() >= 8_388_608.0 {
