@@ -1,1 +1,109 @@
-//! (to be written)
+//! The terminal around the screen: entered and left in order whatever happens, its events in one queue, its frames in
+//! one write.
+//!
+//! ```text
+//! keys ─────┐
+//! signals ──┼─► queue ─► workbench::update ─► engine
+//! engine ───┘                 └─► frame, drawn when something changed
+//! ```
+//!
+//! [`run`] owns the terminal from its call to its return. The thread that calls it draws and never waits for the
+//! engine; nothing is written while nothing changes.
+
+use std::io;
+
+pub use self::{
+    caps::look,
+    ending::{Ending, Exit},
+};
+use self::{events::Event, guard::Guard, screen::Screen};
+use crate::{
+    query::Settings,
+    ui::Look,
+    workbench::{Command, State, Update},
+};
+
+mod caps;
+mod ending;
+mod events;
+mod guard;
+mod keys;
+mod screen;
+mod session;
+
+/// Why the screen could not be opened or had to be left.
+#[derive(Debug, thiserror::Error)]
+pub enum TerminalError {
+    /// There is no terminal to draw on.
+    #[error("{0}")]
+    Unfit(String),
+    /// The terminal cannot be set up, read or written.
+    #[error("cannot {what} the terminal")]
+    Io {
+        /// What was being done to it.
+        what: &'static str,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The engine could not be started.
+    #[error("cannot start the engine")]
+    Engine(#[source] io::Error),
+}
+
+impl TerminalError {
+    fn io(what: &'static str) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io { what, source }
+    }
+}
+
+/// What answers the screen's questions, on threads of its own.
+pub trait Engine {
+    /// Passes a command on; must not wait. What cannot be sent any more is dropped: the engine has said why it ended.
+    fn send(&self, command: Command);
+}
+
+/// How the engine tells its news; may be called from any one thread.
+pub type Notify = Box<dyn Fn(Update) + Send>;
+
+/// What the screen begins with.
+#[derive(Debug, Clone)]
+pub struct Opening {
+    /// The data set's name, as the user gave it.
+    pub title: String,
+    /// The parameters.
+    pub settings: Settings,
+    /// What the terminal can show; [`look`] finds out.
+    pub look: Look,
+}
+
+/// Opens the screen, and returns when the user leaves, a signal ends the session, or the terminal is gone.
+///
+/// `start` starts the engine, which tells its news through the [`Notify`] it is given; it is dropped before the
+/// terminal is given back, and should then end within a tenth of a second.
+///
+/// # Errors
+/// When standard input and output are not a terminal that can be drawn on, when the terminal fails, or when the engine
+/// cannot be started. The terminal is as it was before in every case.
+pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result<E>) -> Result<Ending, TerminalError> {
+    caps::require()?;
+    let (queue, inbox) = events::queue();
+    let signals = events::signals(&queue).map_err(TerminalError::io("watch the signals of"))?;
+    let news = queue.clone();
+    let notify: Notify = Box::new(move |update| {
+        // After the end of the session there is nobody to tell.
+        news.send(Event::Update(update));
+    });
+    let engine = start(notify).map_err(TerminalError::Engine)?;
+    let guard = Guard::enter(queue.clone()).map_err(TerminalError::io("set up"))?;
+    let mut screen = Screen::new(guard, opening.look).map_err(TerminalError::io("set up"))?;
+    events::input(&queue).map_err(TerminalError::io("read"))?;
+    let state = State::new(opening.title, opening.settings);
+    let outcome = session::run(state, &engine, &mut screen, &inbox);
+    // The user gets the shell back before the engine puts its things in order.
+    let panics = screen.leave();
+    signals.close();
+    drop(engine);
+    let mut ending = outcome.map_err(TerminalError::io("write to"))?;
+    ending.lines.extend(panics);
+    Ok(ending)
+}

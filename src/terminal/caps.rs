@@ -1,0 +1,64 @@
+//! What the terminal can show.
+
+use std::{
+    env,
+    ffi::OsString,
+    io::{self, IsTerminal as _},
+};
+
+use super::TerminalError;
+use crate::ui::Look;
+
+/// What the environment says of the terminal: no colour with `NO_COLOR` (<https://no-color.org>), ASCII where the
+/// locale is not UTF-8.
+#[must_use]
+pub fn look() -> Look {
+    from(|name| env::var_os(name))
+}
+
+fn from(variable: impl Fn(&str) -> Option<OsString>) -> Look {
+    let set = |name: &str| variable(name).filter(|value| !value.is_empty());
+    // As setlocale(3) reads them: the first one that is set decides.
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(set);
+    let locale = locale.map(|locale| locale.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    Look { colour: set("NO_COLOR").is_none(), ascii: !(locale.contains("utf-8") || locale.contains("utf8")) }
+}
+
+/// Fails where no screen can be drawn.
+pub(super) fn require() -> Result<(), TerminalError> {
+    if !io::stdout().is_terminal() || !io::stdin().is_terminal() {
+        return Err(TerminalError::Unfit("the screen needs a terminal on standard input and output".to_owned()));
+    }
+    match env::var("TERM") {
+        Ok(term) if term == "dumb" => {
+            Err(TerminalError::Unfit("the terminal cannot place text (TERM=dumb)".to_owned()))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(variables: &[(&str, &str)]) -> Look {
+        from(|name| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| OsString::from(value)))
+    }
+
+    #[test]
+    fn the_locale_decides_on_unicode() {
+        assert!(with(&[]).ascii);
+        assert!(!with(&[("LANG", "de_CH.UTF-8")]).ascii);
+        assert!(!with(&[("LANG", "C"), ("LC_CTYPE", "en_US.utf8")]).ascii);
+        assert!(with(&[("LANG", "en_US.UTF-8"), ("LC_ALL", "C")]).ascii);
+        assert!(!with(&[("LANG", "C.UTF-8"), ("LC_ALL", "")]).ascii, "what is empty is not set");
+        assert!(with(&[("LANG", "de_CH.ISO-8859-1")]).ascii);
+    }
+
+    #[test]
+    fn no_color_is_respected() {
+        assert!(with(&[]).colour);
+        assert!(with(&[("NO_COLOR", "")]).colour);
+        assert!(!with(&[("NO_COLOR", "1")]).colour);
+    }
+}

@@ -1,0 +1,97 @@
+//! Raw mode and the alternate screen, given back whatever happens.
+
+use std::{
+    io,
+    panic::{self, PanicHookInfo},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+};
+
+use ratatui::crossterm::{
+    cursor::{Hide, Show},
+    execute,
+    style::ResetColor,
+    terminal::{self, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen},
+};
+
+use super::events::{Event, Queue};
+
+/// True while the terminal is ours.
+static OURS: AtomicBool = AtomicBool::new(false);
+
+/// So many panics of other threads are remembered.
+const PANICS: usize = 20;
+
+type Hook = dyn Fn(&PanicHookInfo<'_>) + Send + Sync;
+
+/// The terminal while it is ours. Dropping it gives the terminal back.
+pub(super) struct Guard {
+    before: Arc<Hook>,
+    panics: Arc<Mutex<Vec<String>>>,
+}
+
+impl Guard {
+    /// Takes the terminal, and sees to it that a panic gives it back: one of this thread at once; one of another thread
+    /// does not write on the screen, but is told through the queue and remembered.
+    pub(super) fn enter(queue: Queue) -> io::Result<Self> {
+        let before: Arc<Hook> = Arc::from(panic::take_hook());
+        let guard = Self { before: Arc::clone(&before), panics: Arc::default() };
+        let panics = Arc::clone(&guard.panics);
+        let own = thread::current().id();
+        panic::set_hook(Box::new(move |info| {
+            if thread::current().id() == own || !OURS.load(Ordering::SeqCst) {
+                restore();
+                before(info);
+                return;
+            }
+            let words = info.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+            let text = format!("{}: {words}", thread::current().name().unwrap_or("a thread"));
+            let mut panics = panics.lock().unwrap_or_else(PoisonError::into_inner);
+            if panics.len() < PANICS {
+                panics.push(text.clone());
+            }
+            queue.send(Event::Panic(text));
+        }));
+        take()?;
+        Ok(guard)
+    }
+
+    /// Gives the terminal back. Returns what other threads panicked with.
+    pub(super) fn leave(self) -> Vec<String> {
+        restore();
+        std::mem::take(&mut *self.panics.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        restore();
+        // While this thread panics the hook cannot be changed, and it has done its work.
+        if !thread::panicking() {
+            let before = Arc::clone(&self.before);
+            panic::set_hook(Box::new(move |info| before(info)));
+        }
+    }
+}
+
+/// Takes the terminal.
+pub(super) fn take() -> io::Result<()> {
+    // First, so that whatever follows is undone even when it fails half-way.
+    OURS.store(true, Ordering::SeqCst);
+    let taken = terminal::enable_raw_mode().and_then(|()| execute!(io::stdout(), EnterAlternateScreen, Hide));
+    if taken.is_err() {
+        restore();
+    }
+    taken
+}
+
+/// Gives the terminal back, once. What fails cannot be helped: the terminal may be gone.
+pub(super) fn restore() {
+    if OURS.swap(false, Ordering::SeqCst) {
+        let _ = execute!(io::stdout(), EndSynchronizedUpdate, ResetColor, LeaveAlternateScreen, Show);
+        let _ = terminal::disable_raw_mode();
+    }
+}

@@ -1,0 +1,107 @@
+//! What is drawn on: a frame becomes one write.
+
+use std::{
+    cell::RefCell,
+    io::{self, Write},
+    rc::Rc,
+};
+
+use ratatui::{Terminal, backend::CrosstermBackend, crossterm::terminal};
+use rustix::process::{Signal, kill_current_process_group};
+
+use super::guard::{self, Guard};
+use crate::{
+    ui::{self, Look},
+    workbench::State,
+};
+
+/// A surface that the session draws on.
+pub(super) trait Surface {
+    /// Columns and rows.
+    fn size(&self) -> io::Result<(u16, u16)>;
+    /// Draws the state; writes only what changed.
+    fn draw(&mut self, state: &State) -> io::Result<()>;
+    /// Forgets what is drawn, so that the next frame is drawn whole.
+    fn forget(&mut self) -> io::Result<()>;
+    /// Gives the terminal to the shell and asks it to stop us.
+    fn suspend(&mut self) -> io::Result<()>;
+    /// Takes the terminal again.
+    fn resume(&mut self) -> io::Result<()>;
+}
+
+/// What is to be written, until it is written in one piece.
+#[derive(Debug, Default, Clone)]
+struct Pending(Rc<RefCell<Vec<u8>>>);
+
+impl Write for Pending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The terminal's alternate screen.
+pub(super) struct Screen {
+    guard: Guard,
+    terminal: Terminal<CrosstermBackend<Pending>>,
+    pending: Pending,
+    look: Look,
+}
+
+/// Synchronized update, begun and ended: a terminal that knows it shows all of the frame or none.
+/// <https://gist.github.com/christianparpart/d8a62cc1ab659194337d73e399004036>
+const BEGIN: &[u8] = b"\x1b[?2026h";
+const END: &[u8] = b"\x1b[?2026l";
+
+impl Screen {
+    pub(super) fn new(guard: Guard, look: Look) -> io::Result<Self> {
+        let pending = Pending::default();
+        let terminal = Terminal::new(CrosstermBackend::new(pending.clone()))?;
+        Ok(Self { guard, terminal, pending, look })
+    }
+
+    /// Gives the terminal back; returns what other threads panicked with.
+    pub(super) fn leave(self) -> Vec<String> {
+        self.guard.leave()
+    }
+}
+
+impl Surface for Screen {
+    fn size(&self) -> io::Result<(u16, u16)> {
+        terminal::size()
+    }
+
+    fn draw(&mut self, state: &State) -> io::Result<()> {
+        let look = self.look;
+        self.terminal.draw(|frame| ui::render(state, look, frame))?;
+        let frame = std::mem::take(&mut *self.pending.0.borrow_mut());
+        // Every run of changed cells begins with a move of the cursor; a frame without one changes nothing.
+        if frame.contains(&b'H') {
+            let whole = [BEGIN, &frame, END].concat();
+            let mut out = io::stdout().lock();
+            out.write_all(&whole)?;
+            out.flush()?;
+        }
+        Ok(())
+    }
+
+    fn forget(&mut self) -> io::Result<()> {
+        self.terminal.clear()
+    }
+
+    fn suspend(&mut self) -> io::Result<()> {
+        guard::restore();
+        // The whole group, as the terminal itself would: a program that started us must stop too, else the shell waits.
+        kill_current_process_group(Signal::TSTP)?;
+        Ok(())
+    }
+
+    fn resume(&mut self) -> io::Result<()> {
+        guard::restore();
+        guard::take()
+    }
+}
