@@ -6,7 +6,8 @@ use std::{
     rc::Rc,
 };
 
-use ratatui::{Terminal, backend::CrosstermBackend, crossterm::terminal};
+use ratatui::crossterm::terminal;
+use ratatui::{Terminal, backend::CrosstermBackend};
 use rustix::process::{Signal, kill_current_process_group};
 
 use super::guard::{self, Guard};

@@ -1,3 +1,5 @@
+//! The loop on a surface that only remembers: what it draws, when, and how it ends.
+
 use std::{
     cell::RefCell,
     sync::{Arc, mpsc},
