@@ -1,5 +1,204 @@
 //! (L, B) → the first eigenvalues, certified complete.
+//!
+//! [`solve`] walks up the λ axis from shift to shift. At each shift σ a sparse factorisation L − σB = M D Mᵀ counts
+//! the eigenvalues below it: they are as many as D has negative entries (Sylvester). A block Lanczos process with the
+//! same factor finds those near the shift on both sides. The eigenvalues between two shifts come from the process at
+//! the lower and the process at the upper one, and they are accepted only when their number is the difference of the
+//! two counts. Such a slice is a [`Band`]. Nothing about it depends on how many eigenvalues were asked for, so more
+//! of them are always the same bits as before and further ones.
+//!
+//! A mesh of several pieces is solved piece by piece. Everything runs on the calling thread.
 
-pub use self::normalise::Normalisation;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
+pub use self::{band::Band, normalise::Normalisation};
+use crate::{
+    laplacian::{Laplacian, LaplacianError, Mass, Operator, assemble},
+    mesh::Mesh,
+    watch::Watch,
+};
+
+mod band;
+mod block;
+mod dense;
+mod factor;
+mod krylov;
+mod lanes;
 mod normalise;
+mod part;
+mod pencil;
+mod poll;
+#[cfg(test)]
+mod shapes;
+mod slice;
+mod small;
+mod solve;
+mod thorough;
+
+/// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
+pub const KERNEL: u32 = 1;
+
+/// Which eigenproblem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
+pub struct Choice {
+    /// The operator.
+    pub operator: Operator,
+    /// Its mass matrix; always [`Mass::Consistent`] for [`Operator::Cot`], which has none.
+    pub mass: Mass,
+}
+
+impl Choice {
+    /// The choice of an operator and a mass matrix; equal for choices that are the same eigenproblem.
+    #[must_use]
+    pub const fn new(operator: Operator, mass: Mass) -> Self {
+        match operator {
+            Operator::Fem => Self { operator, mass },
+            Operator::Cot => Self { operator, mass: Mass::Consistent },
+        }
+    }
+}
+
+/// Why there is no spectrum.
+#[derive(Debug, Error)]
+pub enum SpectrumError {
+    /// The watch cancelled. The bands finished by then, known ones included, save their time when handed in again.
+    #[error("cancelled")]
+    Cancelled {
+        /// All bands so far.
+        finished: Vec<Band>,
+    },
+    /// The mesh has no eigenvalues to speak of; the text names the defect and its place.
+    #[error("{0}")]
+    Refused(String),
+    /// The number of eigenvalues found does not equal the number counted, whatever was tried. No value is returned
+    /// that is not certified.
+    #[error("the eigenvalues near λ = {at:e} could not be certified complete")]
+    Uncertified {
+        /// Where, in the unit of λ.
+        at: f64,
+        /// All bands before.
+        finished: Vec<Band>,
+    },
+}
+
+impl From<LaplacianError> for SpectrumError {
+    fn from(error: LaplacianError) -> Self {
+        Self::Refused(error.to_string())
+    }
+}
+
+/// The lower end of a mesh's spectrum, certified complete.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Spectrum {
+    /// The finished bands by part and place: at least those that the request needed, and all known ones.
+    pub bands: Vec<Band>,
+    /// How many pieces the bands are of.
+    pub parts: u32,
+    /// How many eigenvalues there can be: the number of vertices in use.
+    pub order: usize,
+    /// 1ᵀB1: the area for finite elements, `order` for the cotangent operator.
+    pub measure: f64,
+    /// How many eigenvalues are zero: the number of connected components.
+    pub zeros: usize,
+    /// What was done to the mesh, one line each.
+    pub notes: Vec<String>,
+}
+
+/// An inertia count: so many eigenvalues of one piece lie below a shift.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Count {
+    /// Which piece, as in [`Band::part`].
+    pub part: u32,
+    /// λ of the shift.
+    pub shift: f64,
+    /// Eigenvalues of the piece below it.
+    pub below: usize,
+}
+
+impl Spectrum {
+    /// The certified eigenvalues, ascending and with their multiplicities; zeros are exactly `0.0`. All eigenvalues of
+    /// the mesh up to the last one are among them.
+    #[must_use]
+    pub fn eigenvalues(&self) -> Vec<f64> {
+        self.certified().into_iter().map(|(value, _)| value).collect()
+    }
+
+    /// For each of the [eigenvalues](Self::eigenvalues) a bound on its error, in its unit, as the residuals give it.
+    #[must_use]
+    pub fn residuals(&self) -> Vec<f64> {
+        self.certified().into_iter().map(|(_, error)| error).collect()
+    }
+
+    /// How many eigenvalues are certified.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        let limit = self.frontier();
+        self.bands.iter().map(|band| band.values.iter().filter(|&&value| value <= limit).count()).sum()
+    }
+
+    /// The inertia counts that prove the eigenvalues complete.
+    #[must_use]
+    pub fn certificate(&self) -> Vec<Count> {
+        self.bands.iter().map(|band| Count { part: band.part, shift: band.upper, below: band.above }).collect()
+    }
+
+    /// Eigenvalues up to here are known of every piece.
+    fn frontier(&self) -> f64 {
+        let mut last = vec![0.0_f64; self.parts as usize];
+        // The small pieces, if there are any, are solved whole.
+        last.iter_mut().take(1).for_each(|small| *small = f64::MAX);
+        for band in &self.bands {
+            if let Some(last) = last.get_mut(band.part as usize) {
+                *last = last.max(band.upper);
+            }
+        }
+        last.into_iter().fold(f64::MAX, f64::min)
+    }
+
+    fn certified(&self) -> Vec<(f64, f64)> {
+        let limit = self.frontier();
+        let mut all: Vec<(f64, f64)> = self
+            .bands
+            .iter()
+            .flat_map(|band| band.values.iter().copied().zip(band.errors.iter().copied()))
+            .filter(|&(value, _)| value <= limit)
+            .collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    }
+}
+
+/// The first `count` eigenvalues of a mesh, or all when it has fewer vertices; often some more, since bands are solved
+/// whole. `known` are bands of the same mesh, choice and [`KERNEL`], as an earlier call gave them; they are taken over
+/// where they continue each other from λ = 0.
+///
+/// The result is the same bits whatever is known, but for further bands that `known` holds. Time grows with the number
+/// of bands that are not known, at about 40 eigenvalues each.
+///
+/// # Errors
+/// When the watch cancels, when the mesh cannot be assembled (see [`LaplacianError`]), or when the eigenvalues found
+/// cannot be proved complete.
+pub fn solve(
+    mesh: &Mesh,
+    choice: Choice,
+    count: usize,
+    known: &[Band],
+    watch: &dyn Watch,
+) -> Result<Spectrum, SpectrumError> {
+    let laplacian = assemble(mesh, choice.operator, choice.mass)?;
+    solve_laplacian(&laplacian, count, known, watch)
+}
+
+/// [`solve`] for matrices that are assembled already.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_laplacian(
+    laplacian: &Laplacian,
+    count: usize,
+    known: &[Band],
+    watch: &dyn Watch,
+) -> Result<Spectrum, SpectrumError> {
+    solve::solve(laplacian, count, known, watch)
+}

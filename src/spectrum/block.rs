@@ -1,0 +1,144 @@
+//! Kernels on blocks of eight vectors.
+
+use super::{
+    lanes::{Kernel, Lanes, Row, WIDTH},
+    pencil::Product,
+};
+
+/// Eight by eight numbers, by rows.
+pub(super) type Square = [Row; WIDTH];
+
+/// Rows that stay in the first cache while all blocks of a basis pass by.
+const TILE: usize = 128;
+
+/// `to = B x`; returns xᵀBx.
+pub(super) struct Multiply<'a> {
+    pub mass: &'a Product,
+    pub x: &'a [Row],
+    pub to: &'a mut [Row],
+}
+
+impl Kernel for Multiply<'_> {
+    type Output = Square;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Square {
+        let Self { mass, x, to } = self;
+        let mut gram = [lanes.zero(); WIDTH];
+        let mut store = |at: usize, sum: L::Reg, own: &Row| {
+            to[at] = lanes.row(sum);
+            for (gram, &own) in gram.iter_mut().zip(own) {
+                *gram = lanes.add_mul(*gram, lanes.splat(own), sum);
+            }
+        };
+        match mass {
+            Product::Unit => {
+                for (at, own) in x.iter().enumerate() {
+                    store(at, lanes.load(own), own);
+                }
+            }
+            Product::Diagonal(values) => {
+                for (at, (own, &value)) in x.iter().zip(values).enumerate() {
+                    store(at, lanes.mul(lanes.load(own), lanes.splat(value)), own);
+                }
+            }
+            Product::Rows(offsets, columns, values) => {
+                for (at, own) in x.iter().enumerate() {
+                    let range = offsets[at] as usize..offsets[at + 1] as usize;
+                    let mut sum = lanes.zero();
+                    for (&column, &value) in columns[range.clone()].iter().zip(&values[range]) {
+                        sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
+                    }
+                    store(at, sum, own);
+                }
+            }
+        }
+        gram.map(|sum| lanes.row(sum))
+    }
+}
+
+/// Adds Vᵢᵀ t to the i-th square for every block of a basis.
+pub(super) struct Dots<'a, 'b> {
+    pub basis: &'a [&'b [Row]],
+    pub t: &'a [Row],
+    pub sums: &'a mut [Square],
+}
+
+impl Kernel for Dots<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { basis, t, sums } = self;
+        for (tile, t) in t.chunks(TILE).enumerate() {
+            let first = tile * TILE;
+            for (block, total) in basis.iter().zip(sums.iter_mut()) {
+                let block = &block[first..first + t.len()];
+                let mut sum: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&total[at]));
+                for (row, t) in block.iter().zip(t) {
+                    let t = lanes.load(t);
+                    for (sum, &value) in sum.iter_mut().zip(row) {
+                        *sum = lanes.add_mul(*sum, lanes.splat(value), t);
+                    }
+                }
+                for (total, sum) in total.iter_mut().zip(sum) {
+                    *total = lanes.row(sum);
+                }
+            }
+        }
+    }
+}
+
+/// `w −= Σ Vᵢ Cᵢ` over the blocks of a basis.
+pub(super) struct Update<'a, 'b> {
+    pub basis: &'a [&'b [Row]],
+    pub factors: &'a [Square],
+    pub w: &'a mut [Row],
+}
+
+impl Kernel for Update<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { basis, factors, w } = self;
+        for (tile, w) in w.chunks_mut(TILE).enumerate() {
+            let first = tile * TILE;
+            for (block, factor) in basis.iter().zip(factors) {
+                let block = &block[first..first + w.len()];
+                let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+                for (w, row) in w.iter_mut().zip(block) {
+                    let mut sum = lanes.load(w);
+                    for (&factor, &value) in factor.iter().zip(row) {
+                        sum = lanes.sub_mul(sum, lanes.splat(value), factor);
+                    }
+                    *w = lanes.row(sum);
+                }
+            }
+        }
+    }
+}
+
+/// `to = x M` with an eight by eight M.
+pub(super) struct Combine<'a> {
+    pub x: &'a [Row],
+    pub factor: &'a Square,
+    pub to: &'a mut [Row],
+}
+
+impl Kernel for Combine<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { x, factor, to } = self;
+        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+        for (to, row) in to.iter_mut().zip(x) {
+            let mut sum = lanes.zero();
+            for (&factor, &value) in factor.iter().zip(row) {
+                sum = lanes.add_mul(sum, lanes.splat(value), factor);
+            }
+            *to = lanes.row(sum);
+        }
+    }
+}

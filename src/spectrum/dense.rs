@@ -1,0 +1,101 @@
+//! All eigenvalues of a small connected piece.
+
+use super::{slice::Found, small::eigen};
+use crate::laplacian::Symmetric;
+
+/// Up to this many rows a piece is solved densely.
+pub(super) const LARGEST: usize = 160;
+
+/// All eigenvalues of a connected piece, ascending, the first one exactly zero. `None` when a decomposition fails.
+///
+/// Two dense problems are solved, because neither is accurate everywhere: the inverse one, `B x = θ (L + τB) x` with
+/// λ = 1/θ − τ, has an error that grows with λ, the direct one `L x = λ B x` has one that shrinks, both in proportion
+/// to λ. Each eigenvalue is taken from the problem with the smaller bound.
+pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
+    let n = matrix.order();
+    if n == 1 {
+        return Some(vec![Found { value: 0.0, near: 0.0, error: 0.0 }]);
+    }
+    let (mut l, mut b) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for (row, column, stiffness, mass) in matrix.entries() {
+        for (i, j) in [(row, column), (column, row)] {
+            l[i * n + j] = stiffness;
+            b[i * n + j] = mass;
+        }
+    }
+    let tau = 4.0 * std::f64::consts::PI / matrix.total_mass();
+    let shifted: Vec<f64> = l.iter().zip(&b).map(|(l, b)| l + tau * b).collect();
+    let mut inverse: Vec<f64> =
+        reduced(&b, &shifted, n)?.into_iter().map(|theta| 1.0 / theta.max(f64::MIN_POSITIVE) - tau).collect();
+    inverse.sort_by(f64::total_cmp);
+    let mut direct = reduced(&l, &b, n)?;
+    direct.sort_by(f64::total_cmp);
+    let largest = direct[n - 1];
+    let unit = 4.0 * n as f64 * f64::EPSILON;
+    let mut found: Vec<Found> = inverse
+        .iter()
+        .zip(&direct)
+        .map(|(&inverse, &direct)| {
+            let shifted = inverse.min(largest) + tau;
+            let (first, second) = (unit * shifted * shifted / tau, unit * largest);
+            let (value, error) = if first <= second { (inverse, first) } else { (direct, second) };
+            Found { value, near: error, error }
+        })
+        .collect();
+    found.sort_by(|a, b| a.value.total_cmp(&b.value));
+    if found[0].value.abs() > 1e-7 * tau || found[1].value <= 0.0 {
+        return None;
+    }
+    found[0] = Found { value: 0.0, near: 0.0, error: 0.0 };
+    Some(found)
+}
+
+/// Eigenvalues of C⁻¹ A C⁻ᵀ with CCᵀ = B.
+fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
+    let mut c = b.to_vec();
+    for j in 0..n {
+        for k in 0..j {
+            let factor = c[j * n + k];
+            for i in j..n {
+                c[i * n + j] -= c[i * n + k] * factor;
+            }
+        }
+        let pivot = c[j * n + j];
+        if !(pivot.is_normal() && pivot > 0.0) {
+            return None;
+        }
+        let root = pivot.sqrt();
+        for i in j..n {
+            c[i * n + j] /= root;
+        }
+    }
+    let mut m = a.to_vec();
+    // Twice X = C⁻¹ M, transposing in between.
+    for _ in 0..2 {
+        for i in 0..n {
+            let (above, row) = m.split_at_mut(i * n);
+            let row = &mut row[..n];
+            for k in 0..i {
+                let factor = c[i * n + k];
+                for (x, y) in row.iter_mut().zip(&above[k * n..(k + 1) * n]) {
+                    *x -= factor * y;
+                }
+            }
+            let inverse = 1.0 / c[i * n + i];
+            row.iter_mut().for_each(|x| *x *= inverse);
+        }
+        for i in 0..n {
+            for j in 0..i {
+                m.swap(i * n + j, j * n + i);
+            }
+        }
+    }
+    for i in 0..n {
+        for j in 0..i {
+            let mean = 0.5 * (m[i * n + j] + m[j * n + i]);
+            m[i * n + j] = mean;
+            m[j * n + i] = mean;
+        }
+    }
+    eigen(&mut m, n, &mut [])
+}

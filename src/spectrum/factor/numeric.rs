@@ -1,0 +1,184 @@
+//! The factorisation for one shift.
+
+use super::{Symbolic, front::Eliminate};
+use crate::{
+    laplacian::{MassMatrix, Symmetric},
+    spectrum::{
+        lanes::{Buffer, WIDTH, dispatch},
+        poll::{Poll, Stop},
+    },
+};
+
+/// L − σB = M D Mᵀ with a unit lower triangular M, and room to do it again for another shift.
+#[derive(Debug, Default)]
+pub(in crate::spectrum) struct Factor {
+    /// M, packed for the solves: see [`pack`].
+    pub(super) values: Vec<f64>,
+    /// 1 / D.
+    pub(super) inverse: Vec<f64>,
+    /// The columns of each supernode in the order in which they became pivots, counted from its first one.
+    pub(super) order: Vec<u32>,
+    /// Whether that differs from their own order, for each supernode.
+    pub(super) moved: Vec<bool>,
+    /// The largest entry of M: by how much rounding was amplified.
+    pub(super) growth: f64,
+    front: Buffer,
+    scaled: Buffer,
+    stack: Vec<f64>,
+}
+
+impl Factor {
+    /// Factors L − σB and returns how many entries of D are negative: by Sylvester's law of inertia the number of
+    /// eigenvalues below σ.
+    ///
+    /// # Errors
+    /// When cancelled, or when a pivot is zero or not finite, so that the shift has to move.
+    pub(in crate::spectrum) fn compute(
+        &mut self,
+        symbolic: &Symbolic,
+        matrix: &Symmetric,
+        sigma: f64,
+        poll: &mut Poll,
+    ) -> Result<usize, Stop> {
+        let size = symbolic.front.next_multiple_of(WIDTH);
+        self.values.resize(symbolic.values(), 0.0);
+        self.inverse.resize(matrix.order(), 0.0);
+        self.order.resize(matrix.order(), 0);
+        self.moved.resize(symbolic.len(), false);
+        self.growth = 1.0;
+        self.front.reserve(size * size);
+        self.scaled.reserve(size * size);
+        self.stack.clear();
+        self.stack.reserve(symbolic.stack);
+        let mut negative = 0;
+        for at in 0..symbolic.len() {
+            let (begin, width, rows) = symbolic.node(at);
+            let used = width + rows.len();
+            let size = used.next_multiple_of(WIDTH);
+            let work = used * used * width;
+            poll.spend(work)?;
+            let front = &mut self.front.flat()[..size * size];
+            front.fill(0.0);
+            entries(symbolic, matrix, sigma, begin..begin + width, size, front);
+            for child in children(symbolic, at) {
+                self.absorb(symbolic, child, size);
+            }
+            let front = &mut self.front.flat()[..size * size];
+            let pivots = &mut self.inverse[begin..begin + width];
+            let order = &mut self.order[begin..begin + width];
+            dispatch(Eliminate { front, scaled: self.scaled.flat(), size, width, pivots, order });
+            self.moved[at] = order.iter().enumerate().any(|(at, &was)| at as u32 != was);
+            for pivot in pivots {
+                if !pivot.is_normal() {
+                    return Err(Stop::Pivot);
+                }
+                negative += usize::from(*pivot < 0.0);
+                *pivot = 1.0 / *pivot;
+            }
+            let front = &self.front.flat()[..size * size];
+            let values = &mut self.values[symbolic.value_start[at]..symbolic.value_start[at + 1]];
+            pack(front, size, width, rows.len(), values);
+            self.growth = values.iter().fold(self.growth, |most, value| most.max(value.abs()));
+            for column in width..used {
+                self.stack.extend_from_slice(&front[column * size + column..column * size + used]);
+            }
+        }
+        Ok(negative)
+    }
+
+    /// How much larger than one the entries of M are.
+    pub(in crate::spectrum) fn growth(&self) -> f64 {
+        self.growth
+    }
+
+    /// Adds the update matrix of the last child on the stack to the front.
+    fn absorb(&mut self, symbolic: &Symbolic, child: usize, size: usize) {
+        let relative = &symbolic.relative[symbolic.row_start[child]..symbolic.row_start[child + 1]];
+        let count = relative.len();
+        let start = self.stack.len() - count * (count + 1) / 2;
+        let front = self.front.flat();
+        let mut update = &self.stack[start..];
+        for (at, &column) in relative.iter().enumerate() {
+            let (values, rest) = update.split_at(count - at);
+            update = rest;
+            let target = &mut front[column as usize * size..(column as usize + 1) * size];
+            for (&row, &value) in relative[at..].iter().zip(values) {
+                target[row as usize] += value;
+            }
+        }
+        self.stack.truncate(start);
+    }
+}
+
+/// The children of a supernode, the last one on the stack first.
+fn children(symbolic: &Symbolic, at: usize) -> impl Iterator<Item = usize> + '_ {
+    let mut below = at;
+    let mut left = symbolic.children[at];
+    std::iter::from_fn(move || {
+        if left == 0 {
+            return None;
+        }
+        left -= 1;
+        let child = below - 1;
+        below = symbolic.first[child] as usize;
+        Some(child)
+    })
+}
+
+/// Puts the entries of the columns of L − σB into a front.
+fn entries(
+    symbolic: &Symbolic,
+    matrix: &Symmetric,
+    sigma: f64,
+    columns: std::ops::Range<usize>,
+    size: usize,
+    front: &mut [f64],
+) {
+    for (at, column) in columns.enumerate() {
+        let target = &mut front[at * size..(at + 1) * size];
+        let range = matrix.range(column);
+        let places = &symbolic.entry[range.clone()];
+        match &matrix.mass {
+            MassMatrix::Full(mass) => {
+                for ((&place, l), b) in places.iter().zip(&matrix.stiffness[range.clone()]).zip(&mass[range]) {
+                    target[place as usize] = l - sigma * b;
+                }
+            }
+            other => {
+                for (&place, l) in places.iter().zip(&matrix.stiffness[range]) {
+                    target[place as usize] = *l;
+                }
+                let b = if let MassMatrix::Diagonal(mass) = other { mass[column] } else { 1.0 };
+                target[at] -= sigma * b;
+            }
+        }
+    }
+}
+
+/// Writes the columns of M of one supernode in the order in which the solves read them: rows in groups of eight (the
+/// last group as many as there are), and in a group column by column. A group inside of the diagonal block has only
+/// the columns left of it, followed by its own strictly lower triangle by rows.
+fn pack(front: &[f64], size: usize, width: usize, below: usize, values: &mut [f64]) {
+    let mut at = 0;
+    let mut group = |first: usize, count: usize, columns: usize| {
+        for column in 0..columns {
+            let from = column * size + first;
+            values[at..at + count].copy_from_slice(&front[from..from + count]);
+            at += count;
+        }
+        if first < width {
+            for row in 1..count {
+                for column in 0..row {
+                    values[at] = front[(first + column) * size + first + row];
+                    at += 1;
+                }
+            }
+        }
+    };
+    for first in (0..width).step_by(WIDTH) {
+        group(first, WIDTH.min(width - first), first);
+    }
+    for first in (0..below).step_by(WIDTH) {
+        group(width + first, WIDTH.min(below - first), width);
+    }
+}

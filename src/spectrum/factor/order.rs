@@ -1,0 +1,136 @@
+//! The order of elimination.
+
+use faer::{
+    dyn_stack::{MemBuffer, MemStack},
+    sparse::{SymbolicSparseColMatRef, linalg::amd},
+};
+
+use crate::laplacian::Symmetric;
+
+/// No parent: a root of the elimination forest.
+pub(super) const ROOT: u32 = u32::MAX;
+
+/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree, then a postorder of the
+/// elimination tree in which a column's heaviest child comes last.
+///
+/// Returns `None` when the ordering runs out of memory or of indices.
+pub(in crate::spectrum) fn order(matrix: &Symmetric) -> Option<Vec<u32>> {
+    let n = matrix.order();
+    let (offsets, neighbours) = matrix.graph();
+    let mut forward = minimum_degree(n, &offsets, &neighbours)?;
+    let mut inverse = vec![0_u32; n];
+    for (new, &old) in forward.iter().enumerate() {
+        inverse[old as usize] = new as u32;
+    }
+    let earlier = |column: usize, visit: &mut dyn FnMut(usize)| {
+        let old = forward[column] as usize;
+        for &neighbour in &neighbours[offsets[old]..offsets[old + 1]] {
+            let row = inverse[neighbour as usize] as usize;
+            if row < column {
+                visit(row);
+            }
+        }
+    };
+    let tree = elimination_tree(n, &earlier);
+    let counts = column_counts(n, &tree, &earlier);
+    let post = postorder(&tree, &counts);
+    forward = post.iter().map(|&at| forward[at as usize]).collect();
+    Some(forward)
+}
+
+fn minimum_degree(n: usize, offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
+    let columns: Vec<u32> = offsets.iter().map(|&at| u32::try_from(at).ok()).collect::<Option<_>>()?;
+    let pattern = SymbolicSparseColMatRef::<u32>::new_checked(n, n, &columns, None, neighbours);
+    let mut forward = vec![0_u32; n];
+    let mut inverse = vec![0_u32; n];
+    let mut memory = MemBuffer::try_new(amd::order_maybe_unsorted_scratch::<u32>(n, neighbours.len())).ok()?;
+    amd::order_maybe_unsorted(&mut forward, &mut inverse, pattern, amd::Control::default(), MemStack::new(&mut memory))
+        .ok()?;
+    Some(forward)
+}
+
+/// Calls back with the rows of a column above its diagonal.
+pub(super) trait Earlier: Fn(usize, &mut dyn FnMut(usize)) {}
+
+impl<F: Fn(usize, &mut dyn FnMut(usize))> Earlier for F {}
+
+/// The parent of every column (Liu 1986).
+pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier) -> Vec<u32> {
+    let mut parent = vec![ROOT; n];
+    let mut ancestor = vec![ROOT; n];
+    for column in 0..n {
+        earlier(column, &mut |row| {
+            let mut at = row;
+            while ancestor[at] != column as u32 {
+                let next = ancestor[at];
+                ancestor[at] = column as u32;
+                if next == ROOT {
+                    parent[at] = column as u32;
+                    break;
+                }
+                at = next as usize;
+                if at == column {
+                    break;
+                }
+            }
+        });
+    }
+    parent
+}
+
+/// The number of entries of every column of the factor, diagonal included, by walking the row subtrees.
+pub(super) fn column_counts(n: usize, parent: &[u32], earlier: &impl Earlier) -> Vec<u32> {
+    let mut counts = vec![1_u32; n];
+    let mut seen = vec![ROOT; n];
+    for column in 0..n {
+        seen[column] = column as u32;
+        earlier(column, &mut |row| {
+            let mut at = row;
+            while seen[at] != column as u32 {
+                counts[at] += 1;
+                seen[at] = column as u32;
+                at = parent[at] as usize;
+            }
+        });
+    }
+    counts
+}
+
+/// A postorder of the forest as the list of old indices; the child with the most entries comes last.
+fn postorder(parent: &[u32], counts: &[u32]) -> Vec<u32> {
+    let n = parent.len();
+    let mut by_weight: Vec<u32> = (0..n as u32).collect();
+    by_weight.sort_by_key(|&at| counts[at as usize]);
+    // Lists of children, heaviest first, because the walk below pushes them on a stack.
+    let mut first = vec![ROOT; n];
+    let mut next = vec![ROOT; n];
+    let mut roots = Vec::new();
+    for &at in &by_weight {
+        match parent[at as usize] {
+            ROOT => roots.push(at),
+            above => {
+                next[at as usize] = first[above as usize];
+                first[above as usize] = at;
+            }
+        }
+    }
+    let mut post = Vec::with_capacity(n);
+    let mut stack = Vec::new();
+    for &root in &roots {
+        stack.push(root);
+        while let Some(&at) = stack.last() {
+            let mut child = first[at as usize];
+            if child == ROOT {
+                stack.pop();
+                post.push(at);
+                continue;
+            }
+            first[at as usize] = ROOT;
+            while child != ROOT {
+                stack.push(child);
+                child = next[child as usize];
+            }
+        }
+    }
+    post
+}

@@ -1,0 +1,210 @@
+//! The structure of the factor, found once per mesh.
+
+use super::order::{ROOT, column_counts, elimination_tree};
+use crate::laplacian::Symmetric;
+
+/// Supernodes, their rows and how their fronts are put together. The matrix must be in the order that
+/// [`order`](super::order::order) gave.
+#[derive(Debug)]
+pub(in crate::spectrum) struct Symbolic {
+    /// First column of every supernode, and n.
+    pub begin: Vec<u32>,
+    /// Where the rows below a supernode's diagonal block are in `rows`.
+    pub row_start: Vec<usize>,
+    /// Rows below the diagonal blocks, ascending per supernode.
+    pub rows: Vec<u32>,
+    /// For each of `rows` its place in the front of the parent supernode.
+    pub relative: Vec<u32>,
+    /// For each entry of the matrix its row in the front of its column's supernode.
+    pub entry: Vec<u32>,
+    /// How many children each supernode has; in postorder they are the last ones on the stack.
+    pub children: Vec<u32>,
+    /// The first supernode of the subtree below each.
+    pub first: Vec<u32>,
+    /// Where the packed values of each supernode start.
+    pub value_start: Vec<usize>,
+    /// The largest front, in rows.
+    pub front: usize,
+    /// The most numbers that waiting update matrices hold together.
+    pub stack: usize,
+}
+
+impl Symbolic {
+    pub(in crate::spectrum) fn new(matrix: &Symmetric) -> Self {
+        let n = matrix.order();
+        let (offsets, neighbours) = matrix.graph();
+        let earlier = |column: usize, visit: &mut dyn FnMut(usize)| {
+            for &neighbour in &neighbours[offsets[column]..offsets[column + 1]] {
+                if (neighbour as usize) < column {
+                    visit(neighbour as usize);
+                }
+            }
+        };
+        let tree = elimination_tree(n, &earlier);
+        let counts = column_counts(n, &tree, &earlier);
+        let begin = supernodes(&tree, &counts);
+        let (row_start, rows, parent) = structure(matrix, &begin);
+        Self::finish(matrix, begin, row_start, rows, &parent)
+    }
+
+    /// Supernodes.
+    pub(super) fn len(&self) -> usize {
+        self.children.len()
+    }
+
+    /// First column, number of columns and rows below of a supernode.
+    #[inline(always)]
+    pub(super) fn node(&self, at: usize) -> (usize, usize, &[u32]) {
+        let begin = self.begin[at] as usize;
+        let width = self.begin[at + 1] as usize - begin;
+        (begin, width, &self.rows[self.row_start[at]..self.row_start[at + 1]])
+    }
+
+    /// Numbers in the factor.
+    pub(super) fn values(&self) -> usize {
+        self.value_start.last().copied().unwrap_or(0)
+    }
+
+    fn finish(matrix: &Symmetric, begin: Vec<u32>, row_start: Vec<usize>, rows: Vec<u32>, parent: &[u32]) -> Self {
+        let count = parent.len();
+        let mut relative = vec![0_u32; rows.len()];
+        let mut children = vec![0_u32; count];
+        let mut entry = vec![0_u32; matrix.rows.len()];
+        let mut place = vec![0_u32; begin[count] as usize];
+        // Children of a supernode precede it, so one pass over the parents with a list of children each suffices.
+        let mut lists: Vec<Vec<u32>> = vec![Vec::new(); count];
+        for (at, &above) in parent.iter().enumerate() {
+            if above != ROOT {
+                lists[above as usize].push(at as u32);
+                children[above as usize] += 1;
+            }
+        }
+        for above in 0..count {
+            let width = begin[above + 1] - begin[above];
+            for column in begin[above]..begin[above + 1] {
+                place[column as usize] = column - begin[above];
+            }
+            for (at, &row) in rows[row_start[above]..row_start[above + 1]].iter().enumerate() {
+                place[row as usize] = width + at as u32;
+            }
+            for column in begin[above]..begin[above + 1] {
+                for at in matrix.range(column as usize) {
+                    entry[at] = place[matrix.rows[at] as usize];
+                }
+            }
+            for &child in &lists[above] {
+                let range = row_start[child as usize]..row_start[child as usize + 1];
+                for at in range {
+                    relative[at] = place[rows[at] as usize];
+                }
+            }
+        }
+        let mut value_start = vec![0_usize; count + 1];
+        let mut first: Vec<u32> = (0..count as u32).collect();
+        let (mut front, mut stack, mut height) = (0, 0, 0);
+        let mut waiting: Vec<usize> = Vec::new();
+        for at in 0..count {
+            let width = (begin[at + 1] - begin[at]) as usize;
+            let below = row_start[at + 1] - row_start[at];
+            value_start[at + 1] = value_start[at] + width * (width - 1) / 2 + width * below;
+            front = front.max(width + below);
+            for _ in 0..children[at] {
+                first[at] = first[first[at] as usize - 1];
+                height -= waiting.pop().unwrap_or(0);
+            }
+            waiting.push(below * (below + 1) / 2);
+            height += below * (below + 1) / 2;
+            stack = stack.max(height);
+        }
+        // While a front is assembled its children still wait, and its own update is pushed after they are gone.
+        Self { begin, row_start, rows, relative, entry, children, first, value_start, front, stack }
+    }
+}
+
+/// Columns with nested patterns, then merged with their parents while few zeros are stored for it.
+fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
+    struct Node {
+        begin: usize,
+        end: usize,
+        /// Rows below.
+        below: usize,
+        /// Stored zeros.
+        zeros: usize,
+    }
+    let n = parent.len();
+    let mut stack: Vec<Node> = Vec::new();
+    let mut column = 0;
+    while column < n {
+        let begin = column;
+        while column + 1 < n && parent[column] == column as u32 + 1 && counts[column] == counts[column + 1] + 1 {
+            column += 1;
+        }
+        column += 1;
+        let mut node = Node { begin, end: column, below: counts[column - 1] as usize - 1, zeros: 0 };
+        while let Some(child) = stack.last() {
+            let above = parent[child.end - 1];
+            if above == ROOT || !(node.begin..node.end).contains(&(above as usize)) {
+                break;
+            }
+            let (inner, outer) = (child.end - child.begin, node.end - node.begin);
+            let zeros = child.zeros + node.zeros + inner * (outer + node.below - child.below);
+            let width = inner + outer;
+            let size = width * (width + 1) / 2 + width * node.below;
+            let share = zeros as f64 / size as f64;
+            let merge = match width {
+                0..=4 => share < 0.8,
+                5..=16 => share < 0.25,
+                17..=48 => share < 0.1,
+                _ => share < 0.05,
+            };
+            if !merge {
+                break;
+            }
+            node.begin = child.begin;
+            node.zeros = zeros;
+            stack.pop();
+        }
+        stack.push(node);
+    }
+    stack.iter().map(|node| node.begin as u32).chain([n as u32]).collect()
+}
+
+/// The rows below every supernode, and its parent.
+fn structure(matrix: &Symmetric, begin: &[u32]) -> (Vec<usize>, Vec<u32>, Vec<u32>) {
+    let n = matrix.order();
+    let count = begin.len() - 1;
+    let mut owner = vec![0_u32; n];
+    for at in 0..count {
+        owner[begin[at] as usize..begin[at + 1] as usize].fill(at as u32);
+    }
+    let mut row_start = vec![0_usize; count + 1];
+    let mut rows: Vec<u32> = Vec::new();
+    let mut parent = vec![ROOT; count];
+    let mut children: Vec<Vec<u32>> = vec![Vec::new(); count];
+    let mut seen = vec![ROOT; n];
+    for at in 0..count {
+        let end = begin[at + 1];
+        let mut list = Vec::new();
+        let mut add = |row: u32| {
+            if row >= end && seen[row as usize] != at as u32 {
+                seen[row as usize] = at as u32;
+                list.push(row);
+            }
+        };
+        for column in begin[at]..end {
+            matrix.rows[matrix.range(column as usize)].iter().for_each(|&row| add(row));
+        }
+        for &child in &children[at] {
+            let range = row_start[child as usize]..row_start[child as usize + 1];
+            rows[range].iter().for_each(|&row| add(row));
+        }
+        list.sort_unstable();
+        if let Some(&first) = list.first() {
+            parent[at] = owner[first as usize];
+            children[owner[first as usize] as usize].push(at as u32);
+        }
+        rows.extend_from_slice(&list);
+        row_start[at + 1] = rows.len();
+    }
+    (row_start, rows, parent)
+}
