@@ -1,9 +1,31 @@
 //! The salsa database that memoises the pipeline, the pool that feeds it, and the host that owns both.
+//!
+//! - `stamp`, `library`: what is costly (content hashes, facts of meshes, spectra) is a pure function of its key, kept in
+//!   memory and in the store.
+//! - `pool`: the threads that fill the library, outside of the database's revisions.
+//! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
+//!   results to the parameters.
+//! - `inquiry`: a study on other threads; `host`: the owner of all of it; `trace`: what ran.
 
 pub use self::{
     answer::{Answer, ModelRow, ModelState, Part, Progress, Source, Stage, StageRow},
+    host::{Cancelled, Config, Host},
     settings::{Parameter, Settings},
+    trace::Query,
+};
+
+pub(crate) use self::{
+    inquiry::{Members, Piece},
+    pool::News,
 };
 
 mod answer;
+mod db;
+mod host;
+mod inquiry;
+mod library;
+mod pool;
+mod rows;
 mod settings;
+mod stamp;
+mod trace;

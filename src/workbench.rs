@@ -28,3 +28,4 @@ mod models;
 pub mod parameters;
 mod state;
 mod update;
+pub mod worker;

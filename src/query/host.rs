@@ -1,0 +1,487 @@
+//! The owner of the database and the pool: takes changes, hears the pool, says what is there.
+
+use std::{
+    collections::{HashMap, VecDeque},
+    path::PathBuf,
+    sync::{Arc, mpsc},
+    time::{Duration, Instant},
+};
+
+use salsa::Setter;
+use thiserror::Error;
+
+use super::{
+    Answer, Part, Query, Settings, Source, Stage,
+    db::{Database, Knobs, ModelFile},
+    inquiry::{Inquiry, Members, Piece},
+    library::{Facts, Failure, Found, Library},
+    pool::{Job, Listener, News, Pool, What},
+    stamp::Stamp,
+    trace::Trace,
+};
+use crate::{
+    dataset::{DataSet, Role},
+    mesh::Format,
+    selection::Cost,
+    spectrum::Choice,
+    store::Store,
+    study::{Boosted, Climbed, FirstK, Mark, Table},
+    watch::Watch,
+};
+
+mod telling;
+
+/// What a host is made of.
+#[derive(Debug, Clone)]
+pub struct Config {
+    /// The labelled models.
+    pub data: DataSet,
+    /// The parameters to begin with.
+    pub settings: Settings,
+    /// Where spectra are kept between sessions.
+    pub store: Store,
+    /// How many models are solved at once, each on one thread.
+    pub threads: usize,
+}
+
+/// The run was cancelled; what was finished is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("interrupted")]
+pub struct Cancelled;
+
+#[derive(Debug)]
+struct Row {
+    file: ModelFile,
+    job: Option<Job>,
+    facts: Option<Arc<Facts>>,
+    found: Option<Result<Solved, (Stage, Failure)>>,
+    working: Option<(usize, usize)>,
+}
+
+#[derive(Debug, Clone)]
+struct Solved {
+    found: Found,
+    eigenvalues: Arc<Vec<f64>>,
+}
+
+/// The newest values of the study.
+#[derive(Debug, Default)]
+struct Shown {
+    places: Arc<Vec<usize>>,
+    first_k: Part<FirstK>,
+    climb_error: Part<Climbed>,
+    climb_adr: Part<Climbed>,
+    boosted: Part<Boosted>,
+    marks: Part<Vec<Vec<Mark>>>,
+    tables: Part<Vec<Table>>,
+}
+
+/// The incremental instrument: owns the inputs, the database and the pool.
+pub struct Host {
+    database: Database,
+    library: Library,
+    pool: Pool,
+    news: Option<mpsc::Receiver<News>>,
+    files: HashMap<PathBuf, ModelFile>,
+    data: DataSet,
+    classes: Arc<Vec<String>>,
+    settings: Settings,
+    /// The greatest kmax so far: a smaller one is a slice of it.
+    reach: usize,
+    rows: Vec<Row>,
+    list: u64,
+    stopped: bool,
+    shown: Shown,
+    failure: Option<Failure>,
+    solved_at: VecDeque<Instant>,
+    serial: u64,
+}
+
+impl std::fmt::Debug for Host {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Host").field("data", &self.data.root).field("settings", &self.settings).finish_non_exhaustive()
+    }
+}
+
+impl Host {
+    /// A host that hears its own pool: for [`Host::run`].
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        let (sender, news) = mpsc::channel();
+        let listener: Listener = Arc::new(move |news| {
+            // Without a receiver the host is being dropped.
+            let _ = sender.send(news);
+        });
+        Self { news: Some(news), ..Self::with_listener(config, listener) }
+    }
+
+    /// A host whose pool tells `listener`; the news must come back through [`Host::hear`].
+    pub(crate) fn with_listener(config: Config, listener: Listener) -> Self {
+        let Config { data, settings, store, threads } = config;
+        let trace = Trace::default();
+        let library = Library::open(store, trace, &data.root);
+        let database = Database::new(library.clone());
+        let classes = Arc::new(data.classes.clone());
+        Knobs::new(
+            &database,
+            settings.operator,
+            settings.mass,
+            settings.kmax,
+            settings.normalisation,
+            settings.distance,
+            settings.k,
+            settings.rounds,
+            settings.sel,
+            Arc::clone(&classes),
+        );
+        let pool = Pool::start(threads, library.clone(), listener);
+        let mut host = Self {
+            database,
+            library,
+            pool,
+            news: None,
+            files: HashMap::new(),
+            data: DataSet { models: Vec::new(), ..data.clone() },
+            classes,
+            reach: settings.kmax,
+            settings,
+            rows: Vec::new(),
+            list: 0,
+            stopped: false,
+            shown: Shown::default(),
+            failure: None,
+            solved_at: VecDeque::new(),
+            serial: 0,
+        };
+        host.update(data);
+        host
+    }
+
+    /// The parameters in force.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Class names.
+    #[must_use]
+    pub fn classes(&self) -> &[String] {
+        &self.classes
+    }
+
+    /// The tracked functions that ran since the last change.
+    #[must_use]
+    pub fn log(&self) -> Vec<Query> {
+        self.library.trace().log()
+    }
+
+    /// Turns the parameters to `settings`. Returns whether anything changed.
+    ///
+    /// Waits until computations under way have noticed (at most some 10 ms); solves are left alone unless they are no
+    /// longer wanted.
+    pub fn set(&mut self, settings: Settings) -> bool {
+        if settings == self.settings {
+            return false;
+        }
+        let old = std::mem::replace(&mut self.settings, settings);
+        self.reach = self.reach.max(self.settings.kmax);
+        let new = &self.settings;
+        self.library.trace().restart();
+        self.database.write(|db| {
+            let knobs = Knobs::get(db);
+            // Setters do not compare, and an input that is set to its own value still runs all that reads it.
+            if old.operator != new.operator {
+                knobs.set_operator(db).to(new.operator);
+            }
+            if old.mass != new.mass {
+                knobs.set_mass(db).to(new.mass);
+            }
+            if old.kmax != new.kmax {
+                knobs.set_kmax(db).to(new.kmax);
+            }
+            if old.normalisation != new.normalisation {
+                knobs.set_normalisation(db).to(new.normalisation);
+            }
+            if old.distance != new.distance {
+                knobs.set_distance(db).to(new.distance);
+            }
+            if old.k != new.k {
+                knobs.set_k(db).to(new.k);
+            }
+            if old.rounds != new.rounds {
+                knobs.set_rounds(db).to(new.rounds);
+            }
+            if old.sel != new.sel {
+                knobs.set_sel(db).to(new.sel);
+            }
+        });
+        let choice = choice(&self.settings);
+        if choice != self::choice(&old) {
+            for row in &mut self.rows {
+                row.found = None;
+                row.working = None;
+            }
+        }
+        if choice != self::choice(&old) || self.settings.kmax != old.kmax {
+            self.want();
+        }
+        self.shown.outdate();
+        self.failure = None;
+        true
+    }
+
+    /// Takes another look at the data set: `data` is what is in the folder now.
+    pub fn update(&mut self, data: DataSet) {
+        self.library.trace().restart();
+        let mut old: HashMap<ModelFile, Row> = self.rows.drain(..).map(|row| (row.file, row)).collect();
+        let classes = Arc::new(data.classes.clone());
+        let files = &mut self.files;
+        let rows = &mut self.rows;
+        let same_classes = *classes == *self.classes;
+        self.database.write(|db| {
+            if !same_classes {
+                let knobs = Knobs::get(db);
+                knobs.set_classes(db).to(Arc::clone(&classes));
+            }
+            for model in &data.models {
+                let Some(format) = Format::of(&model.path) else { continue };
+                let stamp = Stamp::of(&model.path);
+                let file = *files.entry(model.path.clone()).or_insert_with_key(|path| {
+                    ModelFile::new(db, path.clone(), format, model.class, model.role, stamp)
+                });
+                if file.class(db) != model.class {
+                    file.set_class(db).to(model.class);
+                }
+                if file.role(db) != model.role {
+                    file.set_role(db).to(model.role);
+                }
+                let moved = file.stamp(db) != stamp;
+                if moved {
+                    file.set_stamp(db).to(stamp);
+                }
+                let fresh = Row { file, job: None, facts: None, found: None, working: None };
+                rows.push(old.remove(&file).filter(|_| !moved).unwrap_or(fresh));
+            }
+        });
+        self.data = data;
+        self.classes = classes;
+        self.failure = None;
+        self.shown.outdate();
+        self.want();
+    }
+
+    /// Stops the solving; what is finished is kept and can be used.
+    pub fn stop(&mut self) {
+        self.stopped = true;
+        self.list = self.pool.want(Vec::new());
+        for row in &mut self.rows {
+            row.working = None;
+        }
+    }
+
+    /// Goes on after [`Host::stop`].
+    pub fn resume(&mut self) {
+        self.stopped = false;
+        self.want();
+    }
+
+    /// Whether [`Host::stop`] is in force.
+    #[must_use]
+    pub const fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// Tells the pool what is wanted now.
+    fn want(&mut self) {
+        let (choice, count) = (choice(&self.settings), self.settings.kmax);
+        let mut within = HashMap::<u32, usize>::new();
+        let mut jobs = Vec::with_capacity(self.rows.len());
+        for (slot, (row, model)) in self.rows.iter_mut().zip(&self.data.models).enumerate() {
+            let Some(format) = Format::of(&model.path) else { continue };
+            let stamp = row.file.stamp(&self.database);
+            let job = Job { path: model.path.clone(), format, stamp, choice, count };
+            row.job = Some(job.clone());
+            let turn = within.entry(model.class).or_default();
+            jobs.push((*turn, slot, job));
+            *turn += 1;
+        }
+        if self.stopped {
+            return;
+        }
+        // One model of each class in turn: the study is of use long before the last spectrum is there.
+        jobs.sort_by_key(|&(turn, slot, _)| (turn, slot));
+        self.list = self.pool.want(jobs.into_iter().map(|(_, slot, job)| (slot, job)).collect());
+    }
+
+    /// Takes in what the pool has told. Returns whether a model was finished by it.
+    pub(crate) fn hear(&mut self, news: News) -> bool {
+        if news.list != self.list {
+            return false;
+        }
+        let Some(row) = self.rows.get_mut(news.slot) else { return false };
+        match news.what {
+            What::Read(facts) => {
+                row.facts = Some(facts);
+                row.working = Some((0, self.settings.kmax));
+                false
+            }
+            What::Progress { done, total } => {
+                row.working = Some((done, total));
+                false
+            }
+            What::Done { facts, found } => {
+                row.working = None;
+                row.facts = facts.or(row.facts.take());
+                if found.as_ref().is_ok_and(|found| found.source == Source::Ran) {
+                    self.solved_at.push_back(Instant::now());
+                    if self.solved_at.len() > 64 {
+                        self.solved_at.pop_front();
+                    }
+                }
+                row.found = Some(found.map(|mut found| {
+                    // What the pool found in memory was come by earlier in this session.
+                    if let (Source::Memory, Some(Ok(before))) = (found.source, &row.found) {
+                        (found.source, found.seconds) = (before.found.source, before.found.seconds);
+                    }
+                    let eigenvalues = Arc::new(found.spectrum.eigenvalues());
+                    Solved { found, eigenvalues }
+                }));
+                true
+            }
+        }
+    }
+
+    /// The models whose spectra are there; none while they cannot make a study (two training models at least).
+    pub(crate) fn members(&self) -> Option<Members> {
+        let kmax = self.settings.kmax;
+        let ready = self.rows.iter().enumerate().filter_map(|(place, row)| match &row.found {
+            Some(Ok(solved)) if solved.eigenvalues.len() >= kmax => Some((place, row.file, solved.eigenvalues.len())),
+            _ => None,
+        });
+        let ready: Vec<_> = ready.collect();
+        let train = ready.iter().filter(|(_, file, _)| file.role(&self.database) == Role::Train).count();
+        (train >= 2).then(|| Members {
+            places: Arc::new(ready.iter().map(|&(place, ..)| place).collect()),
+            files: ready.iter().map(|&(_, file, _)| file).collect(),
+            reach: ready.iter().map(|&(_, _, count)| count).min().unwrap_or(kmax).min(self.reach),
+        })
+    }
+
+    /// Prepares the study of `members` for another thread.
+    pub(crate) fn inquire(&self, members: Members) -> Inquiry {
+        Inquiry::new(self.database.clone(), members)
+    }
+
+    /// Takes in a value of the study of `members`.
+    pub(crate) fn learn(&mut self, members: &Members, piece: Piece) {
+        self.shown.places = Arc::clone(&members.places);
+        let shown = &mut self.shown;
+        match piece {
+            Piece::FirstK(value) => shown.first_k = Part::fresh(value),
+            Piece::Climb(Cost::Error, value) => shown.climb_error = Part::fresh(value),
+            Piece::Climb(Cost::Adr, value) => shown.climb_adr = Part::fresh(value),
+            Piece::Boosted(value) => shown.boosted = Part::fresh(value),
+            Piece::Marks(value) => shown.marks = Part::fresh(value),
+            Piece::Tables(value) => shown.tables = Part::fresh(value),
+            Piece::Failed(reason) => self.failure = Some(reason),
+        }
+    }
+
+    /// Whether every model is either ready or out.
+    pub(crate) fn complete(&self) -> bool {
+        self.rows.iter().all(|row| match &row.found {
+            Some(Ok(solved)) => solved.eigenvalues.len() >= self.settings.kmax.min(solved.found.spectrum.order),
+            Some(Err(_)) => true,
+            None => false,
+        })
+    }
+
+    /// Says something to the user besides the answers.
+    pub(crate) fn warn(&mut self, warning: &str) {
+        self.failure = Some(warning.into());
+    }
+
+    /// Keeps what the next session needs to start quickly.
+    pub(crate) fn save(&self) {
+        self.library.save_contents();
+    }
+
+    /// Solves everything and makes the study: the whole experiment, without a screen.
+    ///
+    /// `watch` hears of models (finished, all) and is polled every few milliseconds.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once the watch says so; finished spectra and bands are kept.
+    pub fn run(&mut self, watch: &dyn Watch) -> Result<Answer, Cancelled> {
+        if self.stopped {
+            self.resume();
+        }
+        let tick = Duration::from_millis(5);
+        watch.progress(0, self.rows.len());
+        while !self.complete() {
+            if watch.cancelled() {
+                self.stop();
+                self.save();
+                return Err(Cancelled);
+            }
+            let heard = self.news.as_ref().and_then(|news| news.recv_timeout(tick).ok());
+            if let Some(news) = heard
+                && self.hear(news)
+            {
+                watch.progress(self.rows.iter().filter(|row| row.found.is_some()).count(), self.rows.len());
+            }
+        }
+        self.save();
+        if let Some(members) = self.members() {
+            let inquiry = self.inquire(members.clone());
+            let (sender, pieces) = mpsc::channel();
+            let study = std::thread::spawn(move || {
+                inquiry.run(&|piece| {
+                    let _ = sender.send(piece);
+                });
+            });
+            loop {
+                match pieces.recv_timeout(tick) {
+                    Ok(piece) => self.learn(&members, piece),
+                    Err(mpsc::RecvTimeoutError::Disconnected) => break,
+                    Err(mpsc::RecvTimeoutError::Timeout) if watch.cancelled() => {
+                        self.abandon();
+                        return Err(Cancelled);
+                    }
+                    Err(mpsc::RecvTimeoutError::Timeout) => {}
+                }
+            }
+            let _ = study.join();
+        } else {
+            self.shown = Shown::default();
+        }
+        Ok(self.answer())
+    }
+
+    /// Stops the study that is being made; it leaves within some 10 ms.
+    pub(crate) fn abandon(&mut self) {
+        self.database.write(salsa::Database::trigger_cancellation);
+    }
+}
+
+fn choice(settings: &Settings) -> Choice {
+    Choice::new(settings.operator, settings.mass)
+}
+
+impl<T> Part<T> {
+    fn fresh(value: Arc<T>) -> Self {
+        Self { value: Some(value), stale: false }
+    }
+}
+
+impl Shown {
+    /// Marks every value as one of earlier parameters.
+    fn outdate(&mut self) {
+        self.first_k.stale = true;
+        self.climb_error.stale = true;
+        self.climb_adr.stale = true;
+        self.boosted.stale = true;
+        self.marks.stale = true;
+        self.tables.stale = true;
+    }
+}

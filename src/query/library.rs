@@ -1,0 +1,312 @@
+//! Everything that is costly to make, kept in memory and in the store: content hashes, facts of meshes, spectra.
+//!
+//! Each value is a pure function of its key, so it does not matter who made it, when, or in which session. The pool
+//! fills the library, the tracked functions of the database read from it.
+
+use std::{
+    collections::{HashMap, HashSet},
+    path::{Path, PathBuf},
+    sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
+    time::{Duration, Instant},
+};
+
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Source, Stage,
+    stamp::{ContentHash, Stamp},
+    trace::Trace,
+};
+use crate::{
+    mesh::{self, Format, GeometryHash, Mesh, Survey},
+    spectrum::{self, Band, Choice, Spectrum, SpectrumError},
+    store::{Key, Store},
+    watch::Watch,
+};
+
+/// Why a model takes no part, in one line.
+pub type Failure = Arc<str>;
+
+/// What is known of a mesh without its vertices at hand.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Facts {
+    /// Hash of the canonical geometry.
+    pub geometry: GeometryHash,
+    /// Sizes, topology and defects.
+    pub survey: Survey,
+}
+
+/// A mesh file at one moment: where it is and what is in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct FileAt<'a> {
+    pub(crate) path: &'a Path,
+    pub(crate) format: Format,
+    pub(crate) content: ContentHash,
+}
+
+/// A spectrum and how it was come by.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    pub(crate) spectrum: Arc<Spectrum>,
+    pub(crate) source: Source,
+    /// Seconds the solve took; 0 when none ran.
+    pub(crate) seconds: f64,
+}
+
+/// Why there is no spectrum.
+#[derive(Debug, Clone)]
+pub(crate) enum Missing {
+    /// It is no longer wanted. Its finished bands are kept.
+    Cancelled,
+    /// There is none to be had.
+    Failed(Failure),
+}
+
+/// Increase when readers or checks would say something else of the same bytes.
+const READER: u64 = 1;
+
+#[derive(Debug, Default)]
+struct Memory {
+    contents: HashMap<PathBuf, (Stamp, ContentHash)>,
+    facts: HashMap<(ContentHash, Format), Result<Arc<Facts>, Failure>>,
+    spectra: HashMap<(GeometryHash, Choice), Found>,
+    refused: HashMap<(GeometryHash, Choice), Failure>,
+    /// Spectra being solved now, so that two files of one shape are one solve.
+    solving: HashSet<(GeometryHash, Choice)>,
+    /// Bands of solves that were cancelled.
+    begun: HashMap<(GeometryHash, Choice), Vec<Band>>,
+    contents_unsaved: bool,
+}
+
+/// The library. Clones share it.
+#[derive(Debug, Clone)]
+pub(crate) struct Library(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    memory: Mutex<Memory>,
+    solved: Condvar,
+    store: Store,
+    trace: Trace,
+    index: Key,
+}
+
+impl Library {
+    /// A library over `store`; the content hashes last seen below `root` are taken from there.
+    pub(crate) fn open(store: Store, trace: Trace, root: &Path) -> Self {
+        let index = Key::new("contents").field(root.as_os_str().as_encoded_bytes());
+        let contents = store.get::<Vec<(PathBuf, Stamp, ContentHash)>>(&index).unwrap_or_default();
+        let contents = contents.into_iter().map(|(path, stamp, content)| (path, (stamp, content))).collect();
+        let memory = Mutex::new(Memory { contents, ..Memory::default() });
+        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, trace, index }))
+    }
+
+    fn memory(&self) -> MutexGuard<'_, Memory> {
+        self.0.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn trace(&self) -> &Trace {
+        &self.0.trace
+    }
+
+    pub(crate) fn store(&self) -> &Store {
+        &self.0.store
+    }
+
+    /// The hash of the file's bytes, from its stamp when that was seen before.
+    pub(crate) fn content(&self, path: &Path, stamp: Stamp) -> Result<ContentHash, Failure> {
+        if let Some(&(seen, content)) = self.memory().contents.get(path)
+            && seen == stamp
+        {
+            return Ok(content);
+        }
+        let start = Instant::now();
+        let content = ContentHash::of(&read(path)?);
+        if Stamp::of(path) != Some(stamp) {
+            return Err("the file is being changed; it is read again at the next look at the folder".into());
+        }
+        // A stamp that is too fresh to be told from a later one is not kept.
+        if stamp.settled() {
+            let mut memory = self.memory();
+            memory.contents.insert(path.to_owned(), (stamp, content));
+            memory.contents_unsaved = true;
+        }
+        self.trace().made(Stage::Content, Source::Ran, start.elapsed());
+        Ok(content)
+    }
+
+    /// Writes the content hashes for the next session, if there are new ones.
+    pub(crate) fn save_contents(&self) {
+        let mut memory = self.memory();
+        if std::mem::take(&mut memory.contents_unsaved) {
+            let mut list: Vec<_> =
+                memory.contents.iter().map(|(path, &(stamp, content))| (path.clone(), stamp, content)).collect();
+            drop(memory);
+            list.sort();
+            self.0.store.put(&self.0.index, &list);
+        }
+    }
+
+    /// What is known of the mesh in `file`. A file that cannot be read as a mesh fails with its defect.
+    pub(crate) fn facts(&self, file: FileAt<'_>) -> Result<Arc<Facts>, Failure> {
+        let name = (file.content, file.format);
+        if let Some(known) = self.memory().facts.get(&name) {
+            return known.clone();
+        }
+        let start = Instant::now();
+        let key = Key::new("facts").number(READER).field(&file.content.0).number(file.format as u64);
+        let (facts, source) = if let Some(facts) = self.0.store.get::<Facts>(&key) {
+            (Ok(Arc::new(facts)), Source::Disk)
+        } else {
+            let facts = load(file).map(|mesh| Arc::new(Facts { geometry: mesh.hash(), survey: mesh::survey(&mesh) }));
+            if let Ok(facts) = &facts {
+                self.0.store.put(&key, &**facts);
+            }
+            (facts, Source::Ran)
+        };
+        // Only what the bytes decide is remembered; that a file has gone is not.
+        if !matches!(&facts, Err(failure) if !failure.decided) {
+            self.memory().facts.insert(name, facts.clone().map_err(|failure| failure.reason));
+        }
+        self.trace().made(Stage::Survey, source, start.elapsed());
+        facts.map_err(|failure| failure.reason)
+    }
+
+    /// At least `count` eigenvalues of the mesh in `file`, or all it has.
+    pub(crate) fn spectrum(
+        &self,
+        file: FileAt<'_>,
+        facts: &Facts,
+        choice: Choice,
+        count: usize,
+        watch: &dyn Watch,
+    ) -> Result<Found, Missing> {
+        if let Some(refusal) = facts.survey.refusal() {
+            return Err(Missing::Failed(refusal.into()));
+        }
+        let name = (facts.geometry, choice);
+        if let Some(known) = self.claim(name, count, watch)? {
+            return Ok(known);
+        }
+        let found = self.find(file, name, count, watch);
+        self.memory().solving.remove(&name);
+        self.0.solved.notify_all();
+        found
+    }
+
+    /// The spectrum from memory, or none and the right to make it. Waits while another thread makes it.
+    fn claim(&self, name: (GeometryHash, Choice), count: usize, watch: &dyn Watch) -> Result<Option<Found>, Missing> {
+        let mut memory = self.memory();
+        loop {
+            if let Some(found) = memory.spectra.get(&name).filter(|found| suffices(&found.spectrum, count)) {
+                return Ok(Some(Found { source: Source::Memory, seconds: 0.0, ..found.clone() }));
+            }
+            if let Some(reason) = memory.refused.get(&name) {
+                return Err(Missing::Failed(reason.clone()));
+            }
+            if watch.cancelled() {
+                return Err(Missing::Cancelled);
+            }
+            if memory.solving.insert(name) {
+                return Ok(None);
+            }
+            let waited = self.0.solved.wait_timeout(memory, Duration::from_millis(20));
+            memory = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+    }
+
+    /// From the store, else solved.
+    fn find(
+        &self,
+        file: FileAt<'_>,
+        name: (GeometryHash, Choice),
+        count: usize,
+        watch: &dyn Watch,
+    ) -> Result<Found, Missing> {
+        let start = Instant::now();
+        let (geometry, choice) = name;
+        let key = Key::new("spectrum")
+            .number(u64::from(spectrum::KERNEL))
+            .field(&geometry.0)
+            .number(choice.operator as u64)
+            .number(choice.mass as u64);
+        let stored = self.0.store.get::<Spectrum>(&key);
+        if let Some(spectrum) = stored.as_ref().filter(|spectrum| suffices(spectrum, count)) {
+            let found = Found { spectrum: Arc::new(spectrum.clone()), source: Source::Disk, seconds: 0.0 };
+            self.memory().spectra.insert(name, found.clone());
+            self.trace().made(Stage::Spectrum, Source::Disk, start.elapsed());
+            return Ok(found);
+        }
+        let known = self.known_bands(name, stored);
+        let mesh = load(file).map_err(|failure| Missing::Failed(failure.reason))?;
+        match spectrum::solve(&mesh.canonical(), choice, count, &known, watch) {
+            Ok(spectrum) => {
+                self.0.store.update::<Spectrum>(&key, |stored| {
+                    let longer = stored.as_ref().is_none_or(|stored| stored.count() < spectrum.count());
+                    longer.then(|| spectrum.clone())
+                });
+                let found =
+                    Found { spectrum: Arc::new(spectrum), source: Source::Ran, seconds: start.elapsed().as_secs_f64() };
+                let mut memory = self.memory();
+                memory.begun.remove(&name);
+                memory.spectra.insert(name, found.clone());
+                drop(memory);
+                self.trace().made(Stage::Spectrum, Source::Ran, start.elapsed());
+                Ok(found)
+            }
+            Err(SpectrumError::Cancelled { finished }) => {
+                self.memory().begun.insert(name, finished);
+                Err(Missing::Cancelled)
+            }
+            Err(error) => {
+                let reason: Failure = error.to_string().into();
+                self.memory().refused.insert(name, reason.clone());
+                Err(Missing::Failed(reason))
+            }
+        }
+    }
+
+    /// The bands that are there already, of a shorter spectrum or of a solve that was cancelled.
+    fn known_bands(&self, name: (GeometryHash, Choice), stored: Option<Spectrum>) -> Vec<Band> {
+        let memory = self.memory();
+        let shorter = memory.spectra.get(&name).map(|found| found.spectrum.bands.clone());
+        let begun = memory.begun.get(&name).cloned();
+        drop(memory);
+        [stored.map(|spectrum| spectrum.bands), shorter, begun]
+            .into_iter()
+            .flatten()
+            .max_by_key(Vec::len)
+            .unwrap_or_default()
+    }
+}
+
+fn suffices(spectrum: &Spectrum, count: usize) -> bool {
+    spectrum.count() >= count.min(spectrum.order)
+}
+
+/// Why a file is no mesh.
+#[derive(Debug, Clone)]
+struct Unread {
+    reason: Failure,
+    /// Whether the bytes decide it, so that it holds as long as they do.
+    decided: bool,
+}
+
+impl From<Failure> for Unread {
+    fn from(reason: Failure) -> Self {
+        Self { reason, decided: false }
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(path).map_err(|error| format!("cannot be read: {error}").into())
+}
+
+/// Reads the mesh, and makes sure that it is still the one meant.
+fn load(file: FileAt<'_>) -> Result<Mesh, Unread> {
+    let bytes = read(file.path)?;
+    if ContentHash::of(&bytes) != file.content {
+        return Err(Failure::from("the file is being changed; it is read again at the next look at the folder").into());
+    }
+    mesh::read(&bytes, file.format).map_err(|error| Unread { reason: error.to_string().into(), decided: true })
+}

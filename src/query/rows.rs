@@ -1,0 +1,110 @@
+//! The functions above the pipeline that read the parameters and cut what is memoised to what is shown.
+//!
+//! A smaller kmax, another k and fewer rounds T are slices of results that are there: the first-k curves are prefixes,
+//! a hill climbing that never touched an index above kmax is the hill climbing at kmax, and the first rounds of AdaBoost
+//! are a run of that length. Only [`Normalisation::Max`](crate::spectrum::Normalisation::Max) changes every feature with kmax.
+
+use std::sync::Arc;
+
+use super::{
+    Stage,
+    db::{BoostKey, ClimbKey, Cohort, Db, FirstKKey, Knobs, SampleKey, boost, climb, climb_stage, first_k, sample},
+    library::Failure,
+    trace::Query,
+};
+use crate::{
+    selection::{Cost, Strong},
+    spectrum::Choice,
+    study::{self, Boosted, Climbed, FirstK, Mark, Table},
+};
+
+/// AdaBoost is run for at least so many rounds, so that turning T within them is a slice.
+const ROUNDS_AHEAD: usize = 64;
+
+/// The widest sample that holds the first kmax features as they would be at kmax.
+fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> {
+    let normalisation = Knobs::get(db).normalisation(db);
+    let width = if normalisation.depends_on_kmax() { Knobs::get(db).kmax(db) } else { cohort.reach(db) };
+    of_width(db, cohort, width)
+}
+
+fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
+    let knobs = Knobs::get(db);
+    let choice = Choice::new(knobs.operator(db), knobs.mass(db));
+    SampleKey::new(db, cohort, choice, knobs.normalisation(db), width)
+}
+
+/// The first-k curves up to kmax.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn first_k_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<FirstK>, Failure> {
+    let knobs = Knobs::get(db);
+    let first_k = first_k(db, FirstKKey::new(db, wide(db, cohort), knobs.distance(db)))?;
+    let kmax = knobs.kmax(db);
+    Ok(db.library().trace().run(Query::FirstKRows, Stage::Tables, || Arc::new(first_k.prefix(kmax))))
+}
+
+/// A hill climbing over the first kmax features, with its scores.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn climb_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>, cost: Cost) -> Result<Arc<Climbed>, Failure> {
+    let knobs = Knobs::get(db);
+    let (distance, kmax) = (knobs.distance(db), knobs.kmax(db));
+    let mut key = wide(db, cohort);
+    let mut found = climb(db, ClimbKey::new(db, key, distance, cost))?;
+    if found.reach() as usize > kmax {
+        key = of_width(db, cohort, kmax);
+        found = climb(db, ClimbKey::new(db, key, distance, cost))?;
+    }
+    let sample = sample(db, key)?;
+    let trace = db.library().trace();
+    Ok(trace.run(Query::ClimbRows, climb_stage(cost), || Arc::new(study::climbed(&sample, distance, &found))))
+}
+
+/// Every class's strong classifier over the first kmax features, T rounds of it, and the sample it was learnt on.
+fn strong<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<(Vec<Strong>, SampleKey<'db>), Failure> {
+    let knobs = Knobs::get(db);
+    let (rounds, kmax) = (knobs.rounds(db), knobs.kmax(db));
+    let run = rounds.next_power_of_two().max(ROUNDS_AHEAD);
+    let mut key = wide(db, cohort);
+    let cut = |runs: Arc<Vec<Strong>>| runs.iter().map(|strong| strong.cut(rounds)).collect::<Vec<_>>();
+    let mut classes = cut(boost(db, BoostKey::new(db, key, run))?);
+    if classes.iter().any(|strong| strong.reach() as usize > kmax) {
+        key = of_width(db, cohort, kmax);
+        classes = cut(boost(db, BoostKey::new(db, key, run))?);
+    }
+    for round in classes.iter_mut().flat_map(|strong| &mut strong.rounds) {
+        round.ties.retain(|&index| index as usize <= kmax);
+    }
+    Ok((classes, key))
+}
+
+/// AdaBoost after T rounds, with its scores.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn boost_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Boosted>, Failure> {
+    let (classes, key) = strong(db, cohort)?;
+    let sample = sample(db, key)?;
+    let trace = db.library().trace();
+    Ok(trace.run(Query::BoostRows, Stage::Boost, || Arc::new(study::boosted(&sample, &classes))))
+}
+
+/// The eigenvalues AdaBoost selected for each class, as Figures 4 and 5 draw them.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn mark_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Vec<Vec<Mark>>>, Failure> {
+    let (classes, key) = strong(db, cohort)?;
+    let sample = sample(db, key)?;
+    let trace = db.library().trace();
+    Ok(trace.run(Query::MarkRows, Stage::Tables, || Arc::new(study::marks(&sample, &classes))))
+}
+
+/// Tables 1 to 4.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn table_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Vec<Table>>, Failure> {
+    let first_k = first_k_rows(db, cohort)?;
+    let climb_error = climb_rows(db, cohort, Cost::Error)?;
+    let climb_adr = climb_rows(db, cohort, Cost::Adr)?;
+    let boosted = boost_rows(db, cohort)?;
+    let knobs = Knobs::get(db);
+    let (k, rounds, sel) = (knobs.k(db), knobs.rounds(db), knobs.sel(db));
+    Ok(db.library().trace().run(Query::TableRows, Stage::Tables, || {
+        Arc::new(study::tables(&first_k, &climb_error, &climb_adr, &boosted, k, rounds, sel))
+    }))
+}

@@ -1,0 +1,271 @@
+//! The thread that owns the host, so that the screen's never waits.
+//!
+//! Commands go in, answers come out; of several settings in the queue the newest wins. While spectra are being solved the
+//! study is made again and again on the models that are there.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    path::PathBuf,
+    sync::{Arc, mpsc},
+    thread::JoinHandle,
+    time::{Duration, Instant},
+};
+
+use super::{Command, Update};
+use crate::{
+    dataset::{self, DataSet},
+    query::{Config, Host, Members, News, Piece, Settings},
+    store::Store,
+};
+
+/// Where the models are and how they are worked on.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// The folder.
+    pub root: PathBuf,
+    /// Split files.
+    pub options: dataset::Options,
+    /// The parameters to begin with.
+    pub settings: Settings,
+    /// Where spectra are kept between sessions.
+    pub store: Store,
+    /// How many models are solved at once.
+    pub threads: usize,
+}
+
+impl Setup {
+    fn open(&self) -> Result<DataSet, String> {
+        dataset::open(&self.root, &self.options).map_err(|error| error.to_string())
+    }
+}
+
+enum Message {
+    Command(Command),
+    News(News),
+    Piece(u64, Piece),
+    /// The study of that number is over, finished or not.
+    Over(u64),
+}
+
+/// The worker. Dropping it asks the thread to end and does not wait for a long computation.
+#[derive(Debug)]
+pub struct Worker {
+    messages: mpsc::Sender<Message>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// How long [`Worker`]'s drop waits for the thread to put its things in order.
+const PATIENCE: Duration = Duration::from_millis(100);
+/// After a change of parameters the first answer waits so long for the new values, so that the screen changes once.
+const GRACE: Duration = Duration::from_millis(12);
+/// Progress is told so often at most.
+const PROGRESS: Duration = Duration::from_millis(100);
+
+impl Worker {
+    /// Opens the data set on a thread of its own and goes to work. `notify` is called on that thread.
+    ///
+    /// # Errors
+    /// When the system has no thread to give.
+    pub fn spawn(setup: Setup, notify: impl Fn(Update) + Send + 'static) -> std::io::Result<Self> {
+        let (messages, inbox) = mpsc::channel();
+        let outbox = messages.clone();
+        let thread = std::thread::Builder::new().name("worker".into()).spawn(move || {
+            let work = || match setup.open() {
+                Ok(data) => Desk::new(setup, data, outbox, &notify).work(&inbox),
+                Err(reason) => notify(Update::Fatal(reason)),
+            };
+            if catch_unwind(AssertUnwindSafe(work)).is_err() {
+                notify(Update::Fatal("internal error in the worker, please report it".into()));
+            }
+        })?;
+        Ok(Self { messages, thread: Some(thread) })
+    }
+
+    /// Passes a command on; never waits.
+    pub fn send(&self, command: Command) {
+        // Without a receiver the worker has told why it ended.
+        let _ = self.messages.send(Message::Command(command));
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.send(Command::Quit);
+        let deadline = Instant::now() + PATIENCE;
+        if let Some(thread) = self.thread.take() {
+            while !thread.is_finished() && Instant::now() < deadline {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+        }
+    }
+}
+
+/// The worker's state.
+struct Desk<'a> {
+    setup: Setup,
+    host: Host,
+    outbox: mpsc::Sender<Message>,
+    notify: &'a dyn Fn(Update),
+    /// The study under way: its number, its models and when it began.
+    study: Option<(u64, Members, Instant)>,
+    /// The models of the last study that was finished under the parameters in force.
+    studied: Option<Members>,
+    /// Not before this is a study of more models begun, unless they are all there.
+    next_study: Instant,
+    studies: u64,
+    publish_at: Option<Instant>,
+    saved: bool,
+}
+
+impl<'a> Desk<'a> {
+    fn new(setup: Setup, data: DataSet, outbox: mpsc::Sender<Message>, notify: &'a dyn Fn(Update)) -> Self {
+        let config =
+            Config { data, settings: setup.settings.clone(), store: setup.store.clone(), threads: setup.threads };
+        let news = outbox.clone();
+        let host = Host::with_listener(
+            config,
+            Arc::new(move |item| {
+                let _ = news.send(Message::News(item));
+            }),
+        );
+        let now = Instant::now();
+        Self {
+            setup,
+            host,
+            outbox,
+            notify,
+            study: None,
+            studied: None,
+            next_study: now,
+            studies: 0,
+            publish_at: Some(now),
+            saved: false,
+        }
+    }
+
+    fn work(mut self, inbox: &mpsc::Receiver<Message>) {
+        loop {
+            let first = match self.wait() {
+                Some(wait) => match inbox.recv_timeout(wait) {
+                    Ok(message) => Some(message),
+                    Err(mpsc::RecvTimeoutError::Timeout) => None,
+                    Err(mpsc::RecvTimeoutError::Disconnected) => return,
+                },
+                None => match inbox.recv() {
+                    Ok(message) => Some(message),
+                    Err(_) => return,
+                },
+            };
+            let mut newest = None;
+            for message in first.into_iter().chain(inbox.try_iter()) {
+                match message {
+                    Message::Command(Command::Set(settings)) => newest = Some(settings),
+                    Message::Command(Command::Quit) => {
+                        self.host.save();
+                        return;
+                    }
+                    Message::Command(command) => self.obey(&command),
+                    Message::News(news) => {
+                        self.host.hear(news);
+                        self.publish_within(PROGRESS);
+                    }
+                    Message::Piece(number, piece) => self.learn(number, piece),
+                    Message::Over(number) => self.over(number),
+                }
+            }
+            if let Some(settings) = newest
+                && self.host.set(settings)
+            {
+                self.restudy();
+                self.publish_within(GRACE);
+            }
+            self.begin_study();
+            if self.publish_at.is_some_and(|at| at <= Instant::now()) {
+                self.publish_at = None;
+                (self.notify)(Update::Answer(Arc::new(self.host.answer())));
+            }
+            if self.host.complete() && !std::mem::replace(&mut self.saved, true) {
+                self.host.save();
+            }
+        }
+    }
+
+    fn obey(&mut self, command: &Command) {
+        match command {
+            Command::Rescan => match self.setup.open() {
+                Ok(data) => {
+                    self.host.update(data);
+                    self.saved = false;
+                    self.restudy();
+                }
+                Err(reason) => self.host.warn(&reason),
+            },
+            Command::Stop => self.host.stop(),
+            Command::Resume => self.host.resume(),
+            Command::Set(_) | Command::Quit => {}
+        }
+        self.publish_within(GRACE);
+    }
+
+    /// Forgets the study under way: the host's write has ended it.
+    fn restudy(&mut self) {
+        self.study = None;
+        self.studied = None;
+        self.next_study = Instant::now();
+    }
+
+    fn begin_study(&mut self) {
+        if self.study.is_some() || (Instant::now() < self.next_study && !self.host.complete()) {
+            return;
+        }
+        let Some(members) = self.host.members() else { return };
+        if self.studied.as_ref() == Some(&members) {
+            return;
+        }
+        self.studies += 1;
+        let number = self.studies;
+        let inquiry = self.host.inquire(members.clone());
+        let outbox = self.outbox.clone();
+        let begun = std::thread::Builder::new().name("study".into()).spawn(move || {
+            let over = outbox.clone();
+            inquiry.run(&move |piece| {
+                let _ = outbox.send(Message::Piece(number, piece));
+            });
+            let _ = over.send(Message::Over(number));
+        });
+        match begun {
+            Ok(_) => self.study = Some((number, members, Instant::now())),
+            Err(error) => self.host.warn(&format!("the system has no thread to give: {error}")),
+        }
+    }
+
+    fn learn(&mut self, number: u64, piece: Piece) {
+        if let Some((current, members, _)) = &self.study
+            && *current == number
+        {
+            self.host.learn(members, piece);
+            self.publish_within(GRACE / 2);
+        }
+    }
+
+    fn over(&mut self, number: u64) {
+        if let Some((_, members, begun)) = self.study.take_if(|(current, ..)| *current == number) {
+            // A study of more models costs about as much again: leave the solving most of the time.
+            self.next_study = Instant::now() + (begun.elapsed() * 4).max(Duration::from_millis(500));
+            self.studied = Some(members);
+            self.publish_within(Duration::ZERO);
+        }
+    }
+
+    fn publish_within(&mut self, time: Duration) {
+        let at = Instant::now() + time;
+        self.publish_at = Some(self.publish_at.map_or(at, |before| before.min(at)));
+    }
+
+    /// How long nothing needs to be done, unless a message comes; none for ever.
+    fn wait(&self) -> Option<Duration> {
+        let study = (self.study.is_none() && self.host.members() != self.studied).then_some(self.next_study);
+        let at = [self.publish_at, study].into_iter().flatten().min()?;
+        Some(at.saturating_duration_since(Instant::now()))
+    }
+}

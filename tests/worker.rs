@@ -1,0 +1,142 @@
+//! The worker behind the screen: partial answers, knobs turned in the middle of the solving, quick ends.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::{
+    path::Path,
+    sync::{Arc, mpsc},
+    time::{Duration, Instant},
+};
+
+use eigenselect::{
+    dataset,
+    query::{Answer, Config, Host, Settings},
+    spectrum::Normalisation,
+    store::Store,
+    watch::Unwatched,
+    workbench::{
+        Command, Update,
+        worker::{Setup, Worker},
+    },
+};
+
+fn setup(data: &Path, cache: &Path, settings: &Settings) -> Setup {
+    Setup {
+        root: data.to_owned(),
+        options: dataset::Options::default(),
+        settings: settings.clone(),
+        store: Store::open(cache, eigenselect::store::Options::default()),
+        threads: 2,
+    }
+}
+
+fn spawn(setup: Setup) -> (Worker, mpsc::Receiver<Update>) {
+    let (sender, updates) = mpsc::channel();
+    let worker = Worker::spawn(setup, move |update| {
+        let _ = sender.send(update);
+    });
+    (worker.unwrap(), updates)
+}
+
+/// The first answer for which `right` holds.
+fn wait_for(updates: &mpsc::Receiver<Update>, right: impl Fn(&Answer) -> bool) -> Arc<Answer> {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    loop {
+        match updates.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            Ok(Update::Answer(answer)) if right(&answer) => return answer,
+            Ok(Update::Answer(_)) => {}
+            Ok(Update::Fatal(reason)) => panic!("{reason}"),
+            Err(error) => panic!("no such answer came: {error}"),
+        }
+    }
+}
+
+fn settled(answer: &Answer) -> bool {
+    answer.progress.complete() && !answer.tables.stale && !answer.marks.stale && answer.tables.value.is_some()
+}
+
+fn small() -> Settings {
+    Settings { kmax: 30, normalisation: Normalisation::Area, ..Settings::default() }
+}
+
+#[test]
+fn answers_follow_the_knobs_and_equal_those_without_a_screen() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 5);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    let before = wait_for(&updates, settled);
+    assert_eq!(before.members.len(), 15);
+    let settings = Settings { rounds: 3, normalisation: Normalisation::Log, ..small() };
+    worker.send(Command::Set(settings.clone()));
+    let after = wait_for(&updates, |answer| answer.settings == settings && settled(answer));
+    assert!(after.serial > before.serial);
+    assert!(after.boosted.value.as_ref().unwrap().classes.iter().all(|strong| strong.rounds.len() <= 3));
+    let config = Config {
+        data: dataset::open(&data, &dataset::Options::default()).unwrap(),
+        settings,
+        store: Store::open(&folder.path().join("other"), eigenselect::store::Options::default()),
+        threads: 1,
+    };
+    let alone = Host::new(config).run(&Unwatched).unwrap();
+    assert_eq!(after.tables, alone.tables);
+    assert_eq!(after.first_k, alone.first_k);
+    assert_eq!(after.climb_adr, alone.climb_adr);
+    assert_eq!(after.boosted, alone.boosted);
+    assert_eq!(after.marks, alone.marks);
+}
+
+#[test]
+fn knobs_turned_while_spectra_are_solved_lose_nothing() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 4, 6);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    let mut settings = small();
+    for turn in 0..40 {
+        settings.rounds = 1 + turn;
+        settings.k = 1 + turn % 9;
+        worker.send(Command::Set(settings.clone()));
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let answer = wait_for(&updates, |answer| answer.settings == settings && settled(answer));
+    assert_eq!(answer.progress.ready, 24);
+    assert_eq!(answer.members.len(), 24);
+}
+
+#[test]
+fn stopping_keeps_what_is_there_and_resuming_finishes() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 8);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    worker.send(Command::Stop);
+    worker.send(Command::Rescan);
+    worker.send(Command::Resume);
+    let answer = wait_for(&updates, settled);
+    assert_eq!(answer.progress.ready, 24);
+}
+
+#[test]
+fn ends_at_once_in_the_middle_of_a_run() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 8);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    drop(updates.recv_timeout(Duration::from_secs(60)).unwrap());
+    let start = Instant::now();
+    drop(worker);
+    assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_told() {
+    let folder = common::scratch();
+    let (_worker, updates) = spawn(setup(&folder.path().join("nowhere"), folder.path(), &small()));
+    match updates.recv_timeout(Duration::from_secs(60)).unwrap() {
+        Update::Fatal(reason) => assert!(reason.contains("nowhere"), "{reason}"),
+        Update::Answer(_) => panic!("an answer from nowhere"),
+    }
+}
