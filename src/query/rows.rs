@@ -40,7 +40,7 @@ pub(crate) fn first_k_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<
     let knobs = Knobs::get(db);
     let first_k = first_k(db, FirstKKey::new(db, wide(db, cohort), knobs.distance(db)))?;
     let kmax = knobs.kmax(db);
-    Ok(db.library().trace().run(Query::FirstKRows, Stage::Tables, || Arc::new(first_k.prefix(kmax))))
+    Ok(db.library().trace().cut(Query::FirstKRows, Stage::FirstK, || Arc::new(first_k.prefix(kmax))))
 }
 
 /// A hill climbing over the first kmax features, with its scores.
@@ -56,7 +56,7 @@ pub(crate) fn climb_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>, cost: Cost) 
     }
     let sample = sample(db, key)?;
     let trace = db.library().trace();
-    Ok(trace.run(Query::ClimbRows, climb_stage(cost), || Arc::new(study::climbed(&sample, distance, &found))))
+    Ok(trace.cut(Query::ClimbRows, climb_stage(cost), || Arc::new(study::climbed(&sample, distance, &found))))
 }
 
 /// Every class's strong classifier over the first kmax features, T rounds of it, and the sample it was learnt on.
@@ -83,7 +83,7 @@ pub(crate) fn boost_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
     let (classes, key) = strong(db, cohort)?;
     let sample = sample(db, key)?;
     let trace = db.library().trace();
-    Ok(trace.run(Query::BoostRows, Stage::Boost, || Arc::new(study::boosted(&sample, &classes))))
+    Ok(trace.cut(Query::BoostRows, Stage::Boost, || Arc::new(study::boosted(&sample, &classes))))
 }
 
 /// The eigenvalues AdaBoost selected for each class, as Figures 4 and 5 draw them.
@@ -92,7 +92,7 @@ pub(crate) fn mark_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc
     let (classes, key) = strong(db, cohort)?;
     let sample = sample(db, key)?;
     let trace = db.library().trace();
-    Ok(trace.run(Query::MarkRows, Stage::Tables, || Arc::new(study::marks(&sample, &classes))))
+    Ok(trace.cut(Query::MarkRows, Stage::Boost, || Arc::new(study::marks(&sample, &classes))))
 }
 
 /// Tables 1 to 4.

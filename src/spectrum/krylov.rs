@@ -385,7 +385,13 @@ mod tests {
                 }
             }
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            println!("{} rq {} norm-1 {:e} res {:e} ", ritz.value, dot(&x, &lx) / dot(&x, &bx), dot(&x, &bx) - 1.0, ritz.residual / ritz.theta.abs());
+            println!(
+                "{} rq {} norm-1 {:e} res {:e} ",
+                ritz.value,
+                dot(&x, &lx) / dot(&x, &bx),
+                dot(&x, &bx) - 1.0,
+                ritz.residual / ritz.theta.abs()
+            );
         }
     }
 }
