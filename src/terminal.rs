@@ -19,7 +19,7 @@ pub use self::{
 use self::{events::Event, guard::Guard, screen::Screen};
 use crate::{
     query::Settings,
-    ui::Look,
+    ui::{self, Look},
     workbench::{Command, State, Update},
 };
 
@@ -105,5 +105,7 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     drop(engine);
     let mut ending = outcome.map_err(TerminalError::io("write to"))?;
     ending.lines.extend(panics);
+    // Reasons name files, and files can have any name.
+    ending.lines.iter_mut().for_each(|line| *line = ui::clean(line));
     Ok(ending)
 }

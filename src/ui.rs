@@ -17,7 +17,7 @@
 //! Colours are the terminal's own sixteen, and none of them carries a meaning alone: there is always a mark, a word or
 //! an attribute beside it ([`Look`]).
 
-pub use self::look::Look;
+pub use self::{look::Look, text::clean};
 use self::{look::Role, pane::Pane};
 use crate::workbench::{State, View};
 use ratatui::{Frame, layout::Rect};

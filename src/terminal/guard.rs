@@ -11,10 +11,10 @@ use std::{
 };
 
 use ratatui::crossterm::{
-    cursor::{Hide, Show},
+    cursor::{Hide, MoveTo, Show},
     execute,
     style::ResetColor,
-    terminal::{self, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen},
+    terminal::{self, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen},
 };
 
 use super::events::{Event, Queue};
@@ -89,9 +89,20 @@ pub(super) fn take() -> io::Result<()> {
 }
 
 /// Gives the terminal back, once. What fails cannot be helped: the terminal may be gone.
+///
+/// The alternate screen is emptied first: when the window has grown meanwhile, tmux takes some of its lines over into
+/// the shell's screen.
 pub(super) fn restore() {
     if OURS.swap(false, Ordering::SeqCst) {
-        let _ = execute!(io::stdout(), EndSynchronizedUpdate, ResetColor, LeaveAlternateScreen, Show);
+        let _ = execute!(
+            io::stdout(),
+            EndSynchronizedUpdate,
+            ResetColor,
+            Clear(ClearType::All),
+            MoveTo(0, 0),
+            LeaveAlternateScreen,
+            Show
+        );
         let _ = terminal::disable_raw_mode();
     }
 }

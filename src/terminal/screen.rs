@@ -7,7 +7,11 @@ use std::{
 };
 
 use ratatui::crossterm::terminal;
-use ratatui::{Terminal, backend::CrosstermBackend};
+use ratatui::{
+    Terminal,
+    backend::CrosstermBackend,
+    layout::{Position, Rect},
+};
 use rustix::process::{Signal, kill_current_process_group};
 
 use super::guard::{self, Guard};
@@ -91,7 +95,9 @@ impl Surface for Screen {
     }
 
     fn forget(&mut self) -> io::Result<()> {
-        self.terminal.clear()
+        // Not `clear`, which asks the terminal for its cursor and waits for an answer that the reader of keys takes away.
+        let size = self.terminal.size()?;
+        self.terminal.resize(Rect::from((Position::ORIGIN, size)))
     }
 
     fn suspend(&mut self) -> io::Result<()> {

@@ -9,7 +9,8 @@ pub(super) fn width(text: &str) -> usize {
 
 /// A text from a file's name or content, safe to print: whatever a terminal could take for a command, or that would
 /// change the direction or the place of other text, becomes a replacement character.
-pub(super) fn clean(text: &str) -> String {
+#[must_use]
+pub fn clean(text: &str) -> String {
     let mut before = 1;
     let mut kept = |c: char| {
         // One accent on a letter is writing; a tower of them reaches into other lines.
