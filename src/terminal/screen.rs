@@ -95,7 +95,8 @@ impl Surface for Screen {
     }
 
     fn forget(&mut self) -> io::Result<()> {
-        // Not `clear`, which asks the terminal for its cursor and waits for an answer that the reader of keys takes away.
+        // Not `clear`, which asks the terminal for its cursor and waits for an answer that the reader of keys takes
+        // away.
         let size = self.terminal.size()?;
         self.terminal.resize(Rect::from((Position::ORIGIN, size)))
     }
