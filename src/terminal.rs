@@ -20,7 +20,7 @@ use self::{events::Event, guard::Guard, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
-    workbench::{Command, State, Update},
+    workbench::{Command, State, Update, worker::Worker},
 };
 
 mod caps;
@@ -60,6 +60,12 @@ impl TerminalError {
 pub trait Engine {
     /// Passes a command on; must not wait. What cannot be sent any more is dropped: the engine has said why it ended.
     fn send(&self, command: Command);
+}
+
+impl Engine for Worker {
+    fn send(&self, command: Command) {
+        Self::send(self, command);
+    }
 }
 
 /// How the engine tells its news; may be called from any one thread.
