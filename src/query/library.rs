@@ -225,11 +225,14 @@ impl Library {
     ) -> Result<Found, Missing> {
         let start = Instant::now();
         let (geometry, choice) = name;
-        let key = Key::new("spectrum")
-            .number(u64::from(spectrum::KERNEL))
-            .field(&geometry.0)
-            .number(choice.operator as u64)
-            .number(choice.mass as u64);
+        let key_of = |kind| {
+            Key::new(kind)
+                .number(u64::from(spectrum::KERNEL))
+                .field(&geometry.0)
+                .number(choice.operator as u64)
+                .number(choice.mass as u64)
+        };
+        let key = key_of("spectrum");
         let stored = self.0.store.get::<Spectrum>(&key);
         if let Some(spectrum) = stored.as_ref().filter(|spectrum| suffices(spectrum, count)) {
             let found = Found { spectrum: Arc::new(spectrum.clone()), source: Source::Disk, seconds: 0.0 };
@@ -237,7 +240,8 @@ impl Library {
             self.trace().made(Stage::Spectrum, Source::Disk, start.elapsed());
             return Ok(found);
         }
-        let known = self.known_bands(name, stored);
+        let begun_key = key_of("begun");
+        let known = self.known_bands(name, stored, &begun_key);
         let mesh = load(file).map_err(|failure| Missing::Failed(failure.reason))?;
         match spectrum::solve(&mesh.canonical(), choice, count, &known, watch) {
             Ok(spectrum) => {
@@ -255,6 +259,9 @@ impl Library {
                 Ok(found)
             }
             Err(SpectrumError::Cancelled { finished }) => {
+                if finished.len() > known.len() {
+                    self.0.store.put(&begun_key, &finished);
+                }
                 self.memory().begun.insert(name, finished);
                 Err(Missing::Cancelled)
             }
@@ -267,11 +274,12 @@ impl Library {
     }
 
     /// The bands that are there already, of a shorter spectrum or of a solve that was cancelled.
-    fn known_bands(&self, name: (GeometryHash, Choice), stored: Option<Spectrum>) -> Vec<Band> {
+    fn known_bands(&self, name: (GeometryHash, Choice), stored: Option<Spectrum>, begun: &Key) -> Vec<Band> {
         let memory = self.memory();
         let shorter = memory.spectra.get(&name).map(|found| found.spectrum.bands.clone());
-        let begun = memory.begun.get(&name).cloned();
+        let in_memory = memory.begun.get(&name).cloned();
         drop(memory);
+        let begun = in_memory.or_else(|| self.0.store.get(begun));
         [stored.map(|spectrum| spectrum.bands), shorter, begun]
             .into_iter()
             .flatten()
@@ -309,4 +317,57 @@ fn load(file: FileAt<'_>) -> Result<Mesh, Unread> {
         return Err(Failure::from("the file is being changed; it is read again at the next look at the folder").into());
     }
     mesh::read(&bytes, file.format).map_err(|error| Unread { reason: error.to_string().into(), decided: true })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use super::*;
+    use crate::{
+        laplacian::{Mass, Operator},
+        mesh::synth,
+        store,
+    };
+
+    /// Cancels once the first eigenvalues are there.
+    #[derive(Default)]
+    struct AfterSome(AtomicBool);
+
+    impl Watch for AfterSome {
+        fn cancelled(&self) -> bool {
+            self.0.load(Ordering::Relaxed)
+        }
+
+        fn progress(&self, done: usize, _: usize) {
+            self.0.fetch_or(done > 0, Ordering::Relaxed);
+        }
+    }
+
+    #[test]
+    fn the_bands_of_a_cancelled_solve_are_there_in_the_next_session() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.obj");
+        let options = synth::Options { vertices: 1500, ..synth::Options::default() };
+        let mesh = synth::generate(&options, 0, 0).unwrap();
+        mesh::write::obj(&mesh, &mut std::fs::File::create(&path).unwrap()).unwrap();
+        let open = || {
+            let store = Store::open(&folder.path().join("cache"), store::Options::default());
+            Library::open(store, Trace::default(), folder.path())
+        };
+        let (choice, count) = (Choice::new(Operator::Fem, Mass::Consistent), 400);
+        let ask = |library: &Library, watch: &dyn Watch| {
+            let content = library.content(&path, Stamp::of(&path).unwrap()).unwrap();
+            let file = FileAt { path: &path, format: Format::Obj, content };
+            let facts = library.facts(file).unwrap();
+            library.spectrum(file, &facts, choice, count, watch)
+        };
+        assert!(matches!(ask(&open(), &AfterSome::default()), Err(Missing::Cancelled)));
+        let begun = store::stats(&folder.path().join("cache")).unwrap();
+        assert!(begun.kinds.iter().any(|kind| kind.kind == "begun" && kind.tally.files == 1), "{begun:?}");
+        let resumed = ask(&open(), &crate::watch::Unwatched).unwrap();
+        let direct = spectrum::solve(&mesh.canonical(), choice, count, &[], &crate::watch::Unwatched).unwrap();
+        assert_eq!(resumed.spectrum.eigenvalues(), direct.eigenvalues());
+        assert!(matches!(ask(&open(), &crate::watch::Unwatched), Ok(Found { source: Source::Disk, .. })));
+    }
 }
