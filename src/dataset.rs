@@ -138,7 +138,7 @@ pub fn open(root: &Path, options: &Options) -> Result<DataSet, DataSetError> {
     found.finish(root)
 }
 
-/// What a layout yields: models without their final names, in any order.
+/// What a layout yields: models without their final names, in any order. A class's models have a role all or none.
 #[derive(Debug, Default)]
 struct Found {
     classes: Vec<String>,
@@ -152,47 +152,48 @@ struct Found {
 struct Labelled {
     path: PathBuf,
     class: usize,
-    role: Role,
+    /// Its side of the split, where the layout says one.
+    role: Option<Role>,
 }
 
 impl Found {
-    /// Names the models, orders them, and leaves out classes without any.
+    /// Names the models, orders and splits them, and leaves out classes without any.
     fn finish(self, root: &Path) -> Result<DataSet, DataSetError> {
         let Self { classes, files, layout, mut warnings } = self;
-        if !files.iter().any(|file| file.role == Role::Train) {
-            return Err(DataSetError::Empty(root.to_owned()));
-        }
-        let mut numbers = vec![None; classes.len()];
+        let names = name::unique(root, files.iter().map(|file| file.path.as_path()));
+        let mut named: Vec<(String, Labelled)> = names.into_iter().zip(files).collect();
+        named.sort_by(|(a, x), (b, y)| {
+            (x.class, x.role).cmp(&(y.class, y.role)).then_with(|| name::natural(a.as_bytes(), b.as_bytes()))
+        });
         let mut kept = Vec::new();
-        for (class, name) in classes.into_iter().enumerate() {
-            let of_class = || files.iter().filter(|file| file.class == class);
-            if of_class().next().is_none() {
-                continue;
-            }
-            if !of_class().any(|file| file.role == Role::Train) {
+        let mut models = Vec::with_capacity(named.len());
+        for of_class in named.chunk_by(|a, b| a.1.class == b.1.class) {
+            let name = &classes[of_class[0].1.class];
+            let train = three_quarters(of_class.len());
+            let role = |place: usize| if place < train { Role::Train } else { Role::Query };
+            let class = kept.len() as u32;
+            models.extend(of_class.iter().enumerate().map(|(place, (name, file))| Model {
+                name: name.clone(),
+                path: file.path.clone(),
+                class,
+                role: file.role.unwrap_or_else(|| role(place)),
+            }));
+            if of_class.iter().all(|(_, file)| file.role == Some(Role::Query)) {
                 warnings.push(format!("class {name}: no model to train with, only queries"));
             }
-            numbers[class] = Some(kept.len() as u32);
-            kept.push(name);
+            kept.push(name.clone());
         }
-        if kept.len() == 1 {
-            warnings.push(format!(
-                "{}: only one class ({}), so there is nothing to tell apart",
-                root.display(),
-                kept[0]
-            ));
+        if !models.iter().any(|model| model.role == Role::Train) {
+            return Err(DataSetError::Empty(root.to_owned()));
         }
-        let names = name::unique(root, files.iter().map(|file| file.path.as_path()));
-        let mut models: Vec<Model> = files
-            .into_iter()
-            .zip(names)
-            .filter_map(|(Labelled { path, class, role }, name)| {
-                Some(Model { name, path, class: numbers[class]?, role })
-            })
-            .collect();
-        models.sort_by(|a, b| {
-            (a.class, a.role).cmp(&(b.class, b.role)).then_with(|| name::natural(a.name.as_bytes(), b.name.as_bytes()))
-        });
+        if let [only] = &kept[..] {
+            warnings.push(format!("{}: only one class ({only}), so there is nothing to tell apart", root.display()));
+        }
         Ok(DataSet { root: root.to_owned(), classes: kept, models, layout, warnings })
     }
+}
+
+/// Three quarters, rounded to the nearest whole number, and at least one.
+fn three_quarters(count: usize) -> usize {
+    ((3 * count + 2) / 4).max(1)
 }

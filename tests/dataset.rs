@@ -86,6 +86,13 @@ fn three_quarters_are_rounded_and_at_least_one() {
 }
 
 #[test]
+fn the_split_follows_the_order_of_names_not_of_files() {
+    // With their endings, a-b.obj comes before a.obj.
+    let set = models(&folder(&["x/a.obj", "x/a-b.obj", "x/a-b-c.obj", "y/1.off"]));
+    assert_eq!(listed(&set)[..3], ["x train x/a", "x train x/a-b", "x query x/a-b-c"]);
+}
+
+#[test]
 fn split_folders_of_class_folders() {
     let root = folder(&[
         "Train/cup/2.off",

@@ -67,7 +67,7 @@ impl Found {
             for path in folder.folders {
                 let meshes = Walk::within(root).meshes(&path, &mut self.warnings);
                 let class = self.class(&path);
-                self.files.extend(meshes.into_iter().map(|path| Labelled { path, class, role: *role }));
+                self.files.extend(meshes.into_iter().map(|path| Labelled { path, class, role: Some(*role) }));
             }
         }
         for path in top.folders.iter().filter(|path| role(path).is_none()) {
@@ -95,9 +95,9 @@ impl Found {
             let mut labelled = Vec::new();
             for (side, role) in sides {
                 let meshes = Walk::within(root).meshes(side, &mut self.warnings);
-                labelled.extend(meshes.into_iter().map(|path| Labelled { path, class, role }));
+                labelled.extend(meshes.into_iter().map(|path| Labelled { path, class, role: Some(role) }));
             }
-            if labelled.iter().any(|file| file.role == Role::Train) {
+            if labelled.iter().any(|file| file.role == Some(Role::Train)) {
                 with_split += 1;
                 self.files.extend(labelled);
                 let mut others = inner.meshes;
@@ -106,17 +106,11 @@ impl Found {
                 }
                 self.pass_over(root, &others, "lies neither in train nor in query");
             } else {
-                let mut meshes = Walk::within(root).meshes(path, &mut self.warnings);
-                let key = |path: &PathBuf| name::joined(path);
-                meshes.sort_by(|a, b| name::natural(key(a).as_bytes(), key(b).as_bytes()));
+                let meshes = Walk::within(root).meshes(path, &mut self.warnings);
                 if !meshes.is_empty() {
                     whole.push(path.clone());
                 }
-                let train = three_quarters(meshes.len());
-                self.files.extend(meshes.into_iter().enumerate().map(|(number, path)| {
-                    let role = if number < train { Role::Train } else { Role::Query };
-                    Labelled { path, class, role }
-                }));
+                self.files.extend(meshes.into_iter().map(|path| Labelled { path, class, role: None }));
             }
         }
         let layout = match (with_split, whole.len()) {
@@ -166,9 +160,4 @@ impl Found {
         };
         self.warnings.push(format!("{name}: passed over, for it {why}{others}"));
     }
-}
-
-/// Three quarters, rounded to the nearest whole number, and at least one.
-fn three_quarters(count: usize) -> usize {
-    ((3 * count + 2) / 4).max(1)
 }

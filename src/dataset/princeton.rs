@@ -81,7 +81,7 @@ pub(super) fn open(root: &Path, files: &Files) -> Result<Found, DataSetError> {
                     continue;
                 }
                 owner.insert(path.to_owned(), listed);
-                found.files.push(Labelled { path: path.to_owned(), class, role });
+                found.files.push(Labelled { path: path.to_owned(), class, role: Some(role) });
             }
         }
         names.push(shown);

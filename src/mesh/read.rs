@@ -175,6 +175,10 @@ pub enum ReadError {
 /// # Errors
 /// [`ReadError`], naming the line or byte and the values.
 pub fn read(bytes: &[u8], format: Format) -> Result<Mesh, ReadError> {
+    if format != Format::Stl && (bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")) {
+        let defect = "it is a text in UTF-16, where ASCII or UTF-8 is needed".to_owned();
+        return Err(ReadError::Header { format, defect });
+    }
     match format {
         Format::Obj => obj::read(bytes),
         Format::Off => off::read(bytes),

@@ -92,6 +92,12 @@ fn refusals_name_the_place_and_the_values() {
 }
 
 #[test]
+fn a_text_in_utf16_is_told() {
+    let bytes: Vec<u8> = "\u{feff}v 0 0 0".encode_utf16().flat_map(u16::to_be_bytes).collect();
+    assert_eq!(refusal(&bytes, Obj), "not a readable OBJ file: it is a text in UTF-16, where ASCII or UTF-8 is needed");
+}
+
+#[test]
 fn names_need_not_be_utf8() {
     let mut bytes = b"o caf\xe9\nmtllib \xff\xfe.mtl\n# \xe4\n".to_vec();
     bytes.extend(format!("{VERTICES}{FACES}").bytes());

@@ -187,7 +187,7 @@ fn a_polygon_too_large_to_cut_is_refused() {
         write!(text, " 0").unwrap();
     }
     let refusal = refusal(text.as_bytes(), Off);
-    assert_eq!(refusal, "face 1 (counted from 0) has 30000 corners; up to 20000 can be cut into triangles");
+    assert_eq!(refusal, "face 1 (counted from 0) has 30000 corners; up to 10000 can be cut into triangles");
 }
 
 #[test]

@@ -93,6 +93,13 @@ fn cut_anywhere_it_is_refused() {
 }
 
 #[test]
+fn a_header_line_that_is_none_is_passed_over() {
+    let text = String::from_utf8(write::ply_ascii(&tetrahedron())).unwrap();
+    let text = text.replace("comment test", "Created by an old exporter");
+    assert_eq!(mesh(&text, Ply), tetrahedron());
+}
+
+#[test]
 fn strips() {
     let text = "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n\
                 element tristrips 2\nproperty list int int vertex_indices\nend_header\n\
@@ -121,7 +128,10 @@ fn refusals_name_the_place_and_the_values() {
         with("element face 4", "element face 5"),
         "the file ends in face 4 (counted from 0), line 19: 5 of face were announced"
     );
-    assert_eq!(with("3 1 2 3", "-3 1 2 3"), "line 17: face 2 (counted from 0) has \"-3\" where a number should be");
+    assert_eq!(
+        with("3 1 2 3", "-3 1 2 3"),
+        "line 17: face 2 (counted from 0) has \"-3\" where the length of a list should be"
+    );
 
     let binary = write::ply_binary(&tetrahedron(), false, false);
     let data = binary.len() - 48 - 4 * 13;

@@ -4,12 +4,13 @@ use super::ReadError;
 use crate::mesh::Mesh;
 
 mod cutter;
+mod ears;
 
 use cutter::Cutter;
 
 /// Polygons of more corners are refused: the time to cut one grows with the square of their number, and is a second
 /// here at worst.
-pub(super) const MOST_CORNERS: u32 = 20_000;
+pub(super) const MOST_CORNERS: u32 = 10_000;
 
 /// The polygons of a file, their corners one after the other.
 #[derive(Debug, Default)]

@@ -1,9 +1,8 @@
 //! One polygon → triangles.
 
-use std::{cmp::Ordering, collections::HashMap};
+use std::cmp::Ordering;
 
-use earcut::Earcut;
-
+use super::ears::Ears;
 use crate::mesh::vector::{cross, dot, sub};
 
 /// Cuts polygons and keeps what it allocates.
@@ -13,10 +12,7 @@ pub(super) struct Cutter<'a> {
     /// The triangles of all polygons so far.
     pub triangles: Vec<[u32; 3]>,
     ring: Vec<u32>,
-    points: Vec<[f64; 3]>,
-    ears: Vec<u32>,
-    cut: Vec<[u32; 3]>,
-    earcut: Earcut<f64>,
+    ears: Ears,
 }
 
 impl<'a> Cutter<'a> {
@@ -50,7 +46,10 @@ impl<'a> Cutter<'a> {
                 let pair = if self.cut_quad([a, b, c, d]) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] };
                 self.triangles.extend(pair);
             }
-            _ => self.cut_large(),
+            _ => {
+                let points = self.ring.iter().map(|&vertex| self.vertices[vertex as usize]);
+                self.ears.cut(points, |ear| self.triangles.push(ear.map(|corner| self.ring[corner as usize])));
+            }
         }
     }
 
@@ -80,116 +79,6 @@ impl<'a> Cutter<'a> {
         let (ac, bd) = (sub(c, a), sub(d, b));
         if first == second { dot(ac, ac) <= dot(bd, bd) } else { first }
     }
-
-    /// Cuts the ring, of five corners or more, in the plane of its greatest projection.
-    fn cut_large(&mut self) {
-        self.cut.clear();
-        if self.cut_ears().is_none() {
-            self.cut.clear();
-            self.cut.extend((2..self.ring.len() as u32).map(|corner| [0, corner - 1, corner]));
-        }
-        self.triangles.extend(self.cut.iter().map(|triangle| triangle.map(|corner| self.ring[corner as usize])));
-    }
-
-    /// Ear cutting; `None` where its triangles do not fill the ring: it then crosses itself or has no area.
-    fn cut_ears(&mut self) -> Option<()> {
-        self.points.clear();
-        self.points.extend(self.ring.iter().map(|&vertex| self.vertices[vertex as usize]));
-        let flat = project(&self.points)?;
-        self.earcut.earcut(flat, &[], &mut self.ears);
-        // Three corners in the ring's order have the ring's orientation.
-        self.cut.extend(self.ears.as_chunks::<3>().0.iter().map(|&ear| {
-            let mut ear = ear;
-            ear.sort_unstable();
-            ear
-        }));
-        self.restore_straight_corners();
-        self.fills_ring().then_some(())
-    }
-
-    /// Whether the triangles are two fewer than the ring's corners, and their sides are the ring's sides once and
-    /// diagonals twice, there and back.
-    fn fills_ring(&self) -> bool {
-        let corners = self.ring.len() as u32;
-        let mut sides: Vec<(u32, u32)> = self.cut.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
-        sides.sort_unstable();
-        let once = sides.is_sorted_by(|a, b| a < b);
-        once && self.cut.len() as u32 == corners - 2
-            && sides.iter().all(|&(from, to)| (from + 1) % corners == to || sides.binary_search(&(to, from)).is_ok())
-    }
-
-    /// Puts back the corners that ear cutting leaves out because they lie on a straight line: the neighbour across
-    /// has them too, and without them the surface would have a slit there.
-    fn restore_straight_corners(&mut self) {
-        let corners = self.ring.len() as u32;
-        let mut kept = vec![false; corners as usize];
-        for corner in self.cut.iter().flatten() {
-            kept[*corner as usize] = true;
-        }
-        let present: Vec<u32> = (0..corners).filter(|&corner| kept[corner as usize]).collect();
-        if present.len() == corners as usize {
-            return;
-        }
-        let edge = |p: u32, q: u32| (p.min(q), p.max(q));
-        // Which triangle has an edge; outer edges, the only ones asked for, have one.
-        let mut owner: HashMap<(u32, u32), usize> = HashMap::new();
-        for (at, &[a, b, c]) in self.cut.iter().enumerate() {
-            owner.extend([(edge(a, b), at), (edge(b, c), at), (edge(c, a), at)]);
-        }
-        for (i, &p) in present.iter().enumerate() {
-            let q = present[(i + 1) % present.len()];
-            let end = if q > p { q } else { q + corners };
-            let Some(&at) = owner.get(&edge(p, q)).filter(|_| end > p + 1) else { continue };
-            let Some(apex) = self.cut[at].into_iter().find(|corner| *corner != p && *corner != q) else { continue };
-            for next in p + 1..=end {
-                let (last, next) = ((next - 1) % corners, next % corners);
-                let mut triangle = [last, next, apex];
-                triangle.sort_unstable();
-                // The first takes the old one's place. The last has the edge from q to the apex.
-                let place = if last == p { at } else { self.cut.len() };
-                if last == p {
-                    self.cut[at] = triangle;
-                } else {
-                    self.cut.push(triangle);
-                }
-                owner.insert(edge(next, apex), place);
-            }
-        }
-    }
-}
-
-/// A polygon's corners in the coordinate plane in which its shadow is greatest, so turned that the shadow runs
-/// counterclockwise; `None` where it has no area.
-fn project(points: &[[f64; 3]]) -> Option<impl Iterator<Item = [f64; 2]>> {
-    let mut least = points[0];
-    let mut extent = 0.0f64;
-    for axis in 0..3 {
-        least[axis] = points.iter().map(|point| point[axis]).fold(f64::INFINITY, f64::min);
-        let greatest = points.iter().map(|point| point[axis]).fold(f64::NEG_INFINITY, f64::max);
-        extent = extent.max(greatest - least[axis]);
-    }
-    // In units of the extent nothing overflows below.
-    if !(extent > 0.0 && extent.is_finite()) {
-        return None;
-    }
-    let unit = move |point: [f64; 3]| sub(point, least).map(|coordinate| coordinate / extent);
-    let mut normal = [0.0; 3];
-    for (i, &point) in points.iter().enumerate() {
-        let (p, q) = (unit(point), unit(points[(i + 1) % points.len()]));
-        for (sum, part) in normal.iter_mut().zip(cross(p, q)) {
-            *sum += part;
-        }
-    }
-    let axis = (0..3).max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))?;
-    if normal[axis] == 0.0 {
-        return None;
-    }
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let (u, v) = if normal[axis] > 0.0 { (u, v) } else { (v, u) };
-    Some(points.iter().map(move |&point| {
-        let point = unit(point);
-        [point[u], point[v]]
-    }))
 }
 
 #[cfg(test)]
@@ -197,6 +86,16 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    /// Whether triangles are two fewer than a ring's corners, and their sides are the ring's sides once and diagonals
+    /// twice, there and back.
+    fn fill(triangles: &[[u32; 3]], corners: u32) -> bool {
+        let mut sides: Vec<(u32, u32)> = triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).collect();
+        sides.sort_unstable();
+        let once = sides.is_sorted_by(|a, b| a < b);
+        once && triangles.len() as u32 == corners - 2
+            && sides.iter().all(|&(from, to)| (from + 1) % corners == to || sides.binary_search(&(to, from)).is_ok())
+    }
 
     /// Cuts the polygon of all points; gives the corners of each triangle.
     fn cut(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
@@ -300,6 +199,45 @@ mod tests {
     }
 
     #[test]
+    fn straight_corners_stay_though_decimals_round() {
+        // Along the sides of a triangle, at tenths that no f64 holds.
+        let corners: [[f64; 2]; 3] = [[0.1, 0.7], [1.3, 0.3], [0.9, 1.9]];
+        let points: Vec<[f64; 2]> = (0..30)
+            .map(|i| {
+                let (p, q, t) = (corners[i / 10], corners[(i / 10 + 1) % 3], (i % 10) as f64 / 10.0);
+                [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]
+            })
+            .collect();
+        let points = flat(&points);
+        let triangles = cut(&points);
+        assert!(fill(&triangles, 30));
+        assert!(areas(&points, &triangles).into_iter().all(|area| area > 1e-3));
+    }
+
+    #[test]
+    fn a_bridge_to_a_hole_keeps_the_hole() {
+        // A square with a square hole; the ring goes to the hole and back by way of corner 0.
+        let points =
+            flat(&[[0.0, 0.0], [3.0, 0.0], [3.0, 3.0], [0.0, 3.0], [1.0, 1.0], [1.0, 2.0], [2.0, 2.0], [2.0, 1.0]]);
+        let mut cutter = Cutter::new(&points, 0);
+        cutter.cut(&[0, 1, 2, 3, 0, 4, 5, 6, 7, 4]);
+        let areas = areas(&points, &cutter.triangles);
+        assert!(areas.iter().all(|area| *area > 0.0), "{:?}", cutter.triangles);
+        assert_eq!(areas.iter().sum::<f64>(), 2.0 * (9.0 - 1.0));
+    }
+
+    #[test]
+    fn a_ring_that_runs_over_itself_takes_no_longer_than_others() {
+        let points = flat(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
+        let mut cutter = Cutter::new(&points, 0);
+        let start = std::time::Instant::now();
+        cutter.cut(&[0, 1, 2, 3].repeat(1000));
+        assert_eq!(cutter.triangles.len(), 3998);
+        // Milliseconds; the bound is for a busy machine.
+        assert!(start.elapsed().as_secs() < 5);
+    }
+
+    #[test]
     fn rings_without_area_or_crossing_themselves_are_fans() {
         for points in [
             flat(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]]),
@@ -309,10 +247,7 @@ mod tests {
         ] {
             let triangles = cut(&points);
             assert_eq!(triangles.len(), points.len() - 2);
-            let mut cutter = Cutter::new(&points, 0);
-            cutter.ring = (0..points.len() as u32).collect();
-            cutter.cut = triangles;
-            assert!(cutter.fills_ring());
+            assert!(fill(&triangles, points.len() as u32));
         }
     }
 
@@ -368,10 +303,7 @@ mod tests {
             points in prop::collection::vec(prop::array::uniform3(-2..2i8), 4..12),
         ) {
             let points: Vec<[f64; 3]> = points.into_iter().map(|point| point.map(f64::from)).collect();
-            let mut cutter = Cutter::new(&points, 0);
-            cutter.ring = (0..points.len() as u32).collect();
-            cutter.cut = cut(&points);
-            prop_assert!(cutter.fills_ring());
+            prop_assert!(fill(&cut(&points), points.len() as u32));
         }
     }
 }

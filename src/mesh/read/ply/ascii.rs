@@ -28,7 +28,7 @@ fn record(text: &mut Text<'_>, element: &Element, number: usize, parts: &mut Par
             first.get_or_insert(text.line());
             integer(word)
                 .and_then(|length| u32::try_from(length).ok())
-                .ok_or_else(|| bad(text, element, number, word))?
+                .ok_or_else(|| bad(text, element, number, word, "the length of a list"))?
         } else {
             1
         };
@@ -38,10 +38,10 @@ fn record(text: &mut Text<'_>, element: &Element, number: usize, parts: &mut Par
             match property.meaning {
                 Use::Nothing => {}
                 Use::Coordinate(axis) => {
-                    position[axis] = float(word).ok_or_else(|| bad(text, element, number, word))?;
+                    position[axis] = float(word).ok_or_else(|| bad(text, element, number, word, "a number"))?;
                 }
                 Use::Corners => {
-                    let vertex = integer(word).ok_or_else(|| bad(text, element, number, word))?;
+                    let vertex = integer(word).ok_or_else(|| bad(text, element, number, word, "a vertex"))?;
                     parts.corner(element.role, vertex).map_err(|vertex| ReadError::Index {
                         face: number,
                         place: Place::Line(text.line()),
@@ -81,7 +81,7 @@ fn next<'a>(text: &mut Text<'a>, element: &Element, number: usize) -> Result<&'a
     })
 }
 
-fn bad(text: &Text<'_>, element: &Element, number: usize, word: &[u8]) -> ReadError {
-    let defect = format!("{} has {} where a number should be", inside(element, number), quoted(word));
+fn bad(text: &Text<'_>, element: &Element, number: usize, word: &[u8], expected: &str) -> ReadError {
+    let defect = format!("{} has {} where {expected} should be", inside(element, number), quoted(word));
     ReadError::Malformed { place: Place::Line(text.line()), defect }
 }

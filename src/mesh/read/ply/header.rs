@@ -117,7 +117,6 @@ impl Header {
             let line = text.line();
             let Some(keyword) = text.word_on_line() else { continue };
             match keyword {
-                b"comment" | b"obj_info" => {}
                 b"format" => {
                     encoding = Some(match text.word_on_line() {
                         Some(b"ascii") => Encoding::Ascii,
@@ -140,7 +139,8 @@ impl Header {
                     None => return Err(malformed(line, "place for a property", Some(keyword))),
                 },
                 b"end_header" => break,
-                _ => return Err(malformed(line, "header line", Some(keyword))),
+                // Comments; old exporters write some without saying that they are.
+                _ => {}
             }
         }
         text.next_line();
@@ -263,7 +263,7 @@ mod tests {
             ("ply\nproperty float x\n", "line 2"),
             ("ply\nelement vertex 1\nproperty quad x\n", "quad"),
             ("ply\nelement vertex 1\nproperty float\n", "nothing is no name"),
-            ("ply\nhello\n", "hello"),
+            ("ply\nformat ascii 1.0\nelemint vertex 1\nend_header\n", "no element vertex"),
             (&format!("ply\n{vertex}end_header\n0 0 0\n"), "no format"),
             (&format!("ply\nformat ascii 1.0\n{vertex}{vertex}end_header\n0 0 0\n"), "twice"),
             (&format!("ply\nformat ascii 1.0\n{vertex}element face 1\nend_header\n0 0 0\n"), "vertex_indices"),
