@@ -34,6 +34,8 @@ mod shapes;
 mod slice;
 mod small;
 mod solve;
+#[cfg(test)]
+mod tests;
 mod thorough;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.

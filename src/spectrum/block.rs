@@ -1,5 +1,7 @@
 //! Kernels on blocks of eight vectors.
 
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
 use super::{
     lanes::{Kernel, Lanes, Row, WIDTH},
     pencil::Product,

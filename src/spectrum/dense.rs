@@ -50,7 +50,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
     Some(found)
 }
 
-/// Eigenvalues of C⁻¹ A C⁻ᵀ with CCᵀ = B.
+/// Eigenvalues of C⁻¹ A C⁻ᵀ with `CCᵀ = B`.
 fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut c = b.to_vec();
     for j in 0..n {
@@ -82,7 +82,9 @@ fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
                 }
             }
             let inverse = 1.0 / c[i * n + i];
-            row.iter_mut().for_each(|x| *x *= inverse);
+            for x in row.iter_mut() {
+                *x *= inverse;
+            }
         }
         for i in 0..n {
             for j in 0..i {

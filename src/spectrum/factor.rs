@@ -42,12 +42,15 @@ mod tests {
         let (mut product, mut size) = (vec![[0.0; WIDTH]; n], 0.0_f64);
         for (row, column, l, m) in pencil.matrix.entries() {
             let value = l - sigma * m;
-            for at in 0..WIDTH {
-                product[row][at] += value * x.rows()[column][at];
-                size = size.max((value * x.rows()[column][at]).abs());
-                if row != column {
-                    product[column][at] += value * x.rows()[row][at];
+            let mut add = |to: usize, from: usize| {
+                for (sum, x) in product[to].iter_mut().zip(&x.rows()[from]) {
+                    *sum += value * x;
+                    size = size.max((value * x).abs());
                 }
+            };
+            add(row, column);
+            if row != column {
+                add(column, row);
             }
         }
         let worst =

@@ -148,8 +148,8 @@ impl<'a> Krylov<'a> {
         Ok(())
     }
 
-    /// `work = Q R` with QᵀBQ = 1 by Cholesky's decomposition of the Gram matrix; Q in `work`, BQ in `newest`. Columns
-    /// that depend on the others are replaced by random ones, with zeros in R.
+    /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix; Q in `work`, `BQ` in `newest`.
+    /// Columns that depend on the others are replaced by random ones, with zeros in R.
     fn normalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<Square, Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
         if blocks == 0 && !self.locked.is_empty() {
@@ -274,7 +274,7 @@ pub(super) fn projected(alpha: &[Square], beta: &[Square], to: &mut Vec<f64>) {
     }
 }
 
-/// Upper triangular R with RᵀR = G, its inverse, the smallest ratio of a pivot to its diagonal entry, and which
+/// Upper triangular R with `RᵀR = G`, its inverse, the smallest ratio of a pivot to its diagonal entry, and which
 /// columns depend on those before them (their rows of R and columns of the inverse are zero).
 fn cholesky(gram: &Square) -> (Square, Square, f64, u32) {
     let mut upper = Square::default();
@@ -354,7 +354,6 @@ mod tests {
             krylov.step(&mut poll).unwrap();
         }
         let n = pencil.order();
-        let mut worst = 0.0_f64;
         let mut product = vec![[0.0; WIDTH]; n];
         for i in 0..krylov.blocks() {
             let x = krylov.scratch.blocks[i].rows();
@@ -362,18 +361,17 @@ mod tests {
             for j in 0..krylov.blocks() {
                 let mut sum = [Square::default()];
                 dispatch(Dots { basis: &[krylov.scratch.blocks[j].rows()], t: &product, sums: &mut sum });
-                for k in 0..WIDTH {
-                    for l in 0..WIDTH {
+                for (k, row) in sum[0].iter().enumerate() {
+                    for (l, entry) in row.iter().enumerate() {
                         let unit = f64::from(u8::from(i == j && k == l));
-                        worst = worst.max((sum[0][k][l] - unit).abs());
+                        assert!((entry - unit).abs() < 1e-12, "blocks {i} {j}: {entry}");
                     }
                 }
             }
         }
-        println!("orthogonality {worst:e}");
         let ritz = krylov.ritz().unwrap();
-        let vectors = krylov.vectors(&ritz[..24]).unwrap();
-        for (at, ritz) in ritz[..24].iter().enumerate() {
+        let vectors = krylov.vectors(&ritz[..40]).unwrap();
+        for (at, ritz) in ritz[..40].iter().enumerate() {
             let x: Vec<f64> = vectors[at / WIDTH].rows().iter().map(|row| row[at % WIDTH]).collect();
             let (mut lx, mut bx) = (vec![0.0; n], vec![0.0; n]);
             for (row, column, l, b) in pencil.matrix.entries() {
@@ -385,13 +383,43 @@ mod tests {
                 }
             }
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            println!(
-                "{} rq {} norm-1 {:e} res {:e} ",
-                ritz.value,
-                dot(&x, &lx) / dot(&x, &bx),
-                dot(&x, &bx) - 1.0,
-                ritz.residual / ritz.theta.abs()
-            );
+            let quotient = dot(&x, &lx) / dot(&x, &bx);
+            // The quotient's own error is of second order.
+            let bound = ritz.residual * ritz.residual / ritz.theta.abs().powi(3) * 100.0;
+            assert!((dot(&x, &bx) - 1.0).abs() < 1e-12);
+            assert!((quotient - ritz.value).abs() < 1e-13 * (ritz.value + sigma) + bound, "{quotient} {ritz:?}");
+        }
+    }
+
+    #[test]
+    fn dependent_columns_are_replaced() {
+        let laplacian = assemble(&shapes::grid(20, 20), Operator::Fem, Mass::Consistent).unwrap();
+        let pencil = Pencil::new(&laplacian.matrix).unwrap();
+        let mut poll = Poll::new(&Unwatched);
+        let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
+        factor.compute(&pencil.symbolic, &pencil.matrix, 50.0, &mut poll).unwrap();
+        let mut krylov = Krylov::start(&pencil, &factor, 50.0, 5, &[], &mut scratch, &mut poll).unwrap();
+        for row in krylov.scratch.work.rows_mut() {
+            row[3] = 2.0 * row[1] - row[0];
+            row[7] = 0.0;
+        }
+        let before = krylov.scratch.work.rows().to_vec();
+        let upper = krylov.normalise(0, &mut poll).unwrap();
+        let gram = dispatch(Multiply {
+            mass: &pencil.mass,
+            x: krylov.scratch.work.rows(),
+            to: krylov.scratch.mass.rows_mut(),
+        });
+        for (i, row) in gram.iter().enumerate() {
+            for (j, entry) in row.iter().enumerate() {
+                assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-12);
+            }
+        }
+        for (before, q) in before.iter().zip(krylov.scratch.work.rows()) {
+            for (j, before) in before.iter().enumerate() {
+                let product: f64 = (0..WIDTH).map(|k| q[k] * upper[k][j]).sum();
+                assert!((product - before).abs() < 1e-10, "column {j}: {product} {before}");
+            }
         }
     }
 }

@@ -4,6 +4,8 @@
 //! AVX2 registers or an array that the compiler makes the best of. The choice is made at run time; the results of the
 //! first two are the same bits, because both fuse every multiplication with its addition in the same order.
 
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{__m256d, __m512d};
 

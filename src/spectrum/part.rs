@@ -193,7 +193,7 @@ impl Part {
         while krylov.blocks() <= most {
             krylov.step(poll)?;
             let blocks = krylov.blocks() - 1;
-            if blocks != most && (blocks < FIRST_LOOK || (blocks - FIRST_LOOK) % LOOK != 0) {
+            if blocks != most && (blocks < FIRST_LOOK || !(blocks - FIRST_LOOK).is_multiple_of(LOOK)) {
                 continue;
             }
             let Some(ritz) = krylov.ritz() else { break };
@@ -249,6 +249,7 @@ impl Part {
 }
 
 /// What a process is to find right of its shift.
+#[derive(Clone, Copy)]
 struct Ahead {
     /// The distance to the next shift.
     width: f64,

@@ -64,3 +64,26 @@ pub(crate) fn grid(a: usize, b: usize) -> Mesh {
     }
     Mesh::new(points, triangles)
 }
+
+/// The side of a prism over a regular polygon, in as many rows, of circumference 3 and height 1: flat inside, so
+/// isometric to a cylinder.
+pub(crate) fn prism(sides: usize, rows: usize) -> Mesh {
+    let radius = 1.5 / sides as f64 / (std::f64::consts::PI / sides as f64).sin();
+    let points = (0..=rows)
+        .flat_map(|y| {
+            (0..sides).map(move |x| {
+                let (sine, cosine) = (std::f64::consts::TAU * x as f64 / sides as f64).sin_cos();
+                [radius * cosine, radius * sine, y as f64 / rows as f64]
+            })
+        })
+        .collect();
+    let at = |x: usize, y: usize| (y * sides + x % sides) as u32;
+    let mut triangles = Vec::new();
+    for y in 0..rows {
+        for x in 0..sides {
+            let [p, q, r, s] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            triangles.extend([[p, q, r], [p, r, s]]);
+        }
+    }
+    Mesh::new(points, triangles)
+}

@@ -5,26 +5,10 @@ use std::time::Instant;
 
 use eigenselect::{
     laplacian::{Mass, Operator},
-    mesh::Mesh,
+    mesh::{Format, read},
     spectrum::{Choice, solve},
     watch::Unwatched,
 };
-
-fn read(path: &str) -> Mesh {
-    let text = std::fs::read_to_string(path).unwrap();
-    let mut words = text.lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace);
-    assert_eq!(words.next(), Some("OFF"), "{path}");
-    let mut number = || words.next().unwrap().parse::<f64>().unwrap();
-    let (vertices, faces) = (number() as usize, number() as usize);
-    number();
-    let points = (0..vertices).map(|_| [number(), number(), number()]).collect();
-    let mut triangles = Vec::new();
-    for _ in 0..faces {
-        let corners: Vec<u32> = (0..number() as usize).map(|_| number() as u32).collect();
-        triangles.extend((2..corners.len()).map(|at| [corners[0], corners[at - 1], corners[at]]));
-    }
-    Mesh::new(points, triangles)
-}
 
 fn main() {
     let mut arguments = std::env::args().skip(1).filter(|argument| argument != "--bench");
@@ -47,7 +31,14 @@ fn main() {
         }
     }
     for file in files {
-        let mesh = read(&file);
+        let format = Format::of(file.as_ref()).unwrap();
+        let mesh = match read(&std::fs::read(&file).unwrap(), format) {
+            Ok(mesh) => mesh.canonical(),
+            Err(error) => {
+                println!("{file} not read: {error}");
+                continue;
+            }
+        };
         for _ in 0..rounds {
             let start = Instant::now();
             let result = solve(&mesh, choice, count, &[], &Unwatched);

@@ -3,6 +3,8 @@
 //! A front is a square of numbers by columns, of which the lower triangle counts. Its size is rounded up to eight,
 //! the extra rows and columns being zero.
 
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
 use std::ops::Range;
 
 use crate::spectrum::lanes::{Kernel, Lanes, Row, WIDTH};

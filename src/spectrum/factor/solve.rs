@@ -1,5 +1,7 @@
 //! (L − σB) x = b for eight right-hand sides at once.
 
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
 use std::ops::Range;
 
 use super::{Factor, Symbolic};

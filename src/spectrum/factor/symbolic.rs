@@ -1,5 +1,7 @@
 //! The structure of the factor, found once per mesh.
 
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
 use super::order::{ROOT, column_counts, elimination_tree};
 use crate::laplacian::Symmetric;
 

@@ -1,0 +1,56 @@
+//! Eigenvalues of SHREC 2007 meshes against SciPy's.
+
+use std::{path::Path, process::Command};
+
+use eigenselect::{
+    mesh::{Format, read},
+    spectrum::{Choice, solve},
+    watch::Unwatched,
+};
+
+/// Made by `tests/reference/spectrum.py`: name, number of vertices, 500 eigenvalues of consistent finite elements.
+const REFERENCE: &str = include_str!("reference/spectrum.txt");
+
+#[test]
+fn ten_meshes_agree_with_scipy_in_every_eigenvalue() {
+    let archive = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/shrec07/meshes.tar.xz"));
+    if !archive.exists() {
+        println!("skipped: there is no {}", archive.display());
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let names: Vec<&str> = REFERENCE.lines().map(|line| line.split(' ').next().unwrap()).collect();
+    assert_eq!(names.len(), 10);
+    let unpacked = Command::new("tar")
+        .arg("-xJf")
+        .arg(archive)
+        .arg("-C")
+        .arg(folder.path())
+        .args(names.iter().map(|name| format!("shrec07/{name}.off")))
+        .status()
+        .unwrap();
+    assert!(unpacked.success());
+    for line in REFERENCE.lines() {
+        let mut words = line.split(' ');
+        let name = words.next().unwrap();
+        let order: usize = words.next().unwrap().parse().unwrap();
+        let expected: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
+        assert_eq!(expected.len(), 500);
+        let bytes = std::fs::read(folder.path().join(format!("shrec07/{name}.off"))).unwrap();
+        let mesh = read(&bytes, Format::Off).unwrap().canonical();
+        let spectrum = solve(&mesh, Choice::default(), 500, &[], &Unwatched).unwrap();
+        assert_eq!((spectrum.order, spectrum.zeros), (order, 1));
+        let found = spectrum.eigenvalues();
+        assert!(expected[0].abs() < 1e-9 && found[0] == 0.0);
+        let mut worst = 0.0_f64;
+        for (found, expected) in found[1..500].iter().zip(&expected[1..]) {
+            worst = worst.max((found - expected).abs() / expected);
+        }
+        println!("{name}: {worst:.1e}");
+        assert!(worst < 1e-9, "mesh {name}: {worst:e}");
+        // The bounds are of the same kind: small, and not below what is seen.
+        let widest =
+            spectrum.residuals()[1..500].iter().zip(&found[1..500]).fold(0.0_f64, |most, (e, v)| most.max(e / v));
+        assert!(widest < 1e-9, "mesh {name}: {widest:e}");
+    }
+}
