@@ -1,5 +1,6 @@
 //! Distances between feature vectors: sums of one term per selected feature.
 
+use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
 /// The distance between the selected features of two models.
@@ -46,6 +47,9 @@ impl Distance {
 pub(crate) trait Term: Copy + Send + Sync {
     /// The term of the values `a` and `b`.
     fn term(a: f64, b: f64) -> f64;
+
+    /// The same in every lane, to the last bit.
+    fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s;
 }
 
 #[derive(Clone, Copy)]
@@ -60,12 +64,23 @@ impl Term for L2 {
     fn term(a: f64, b: f64) -> f64 {
         (a - b) * (a - b)
     }
+
+    #[inline(always)]
+    fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
+        let difference = simd.sub_f64s(a, b);
+        simd.mul_f64s(difference, difference)
+    }
 }
 
 impl Term for L1 {
     #[inline(always)]
     fn term(a: f64, b: f64) -> f64 {
         (a - b).abs()
+    }
+
+    #[inline(always)]
+    fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
+        simd.abs_f64s(simd.sub_f64s(a, b))
     }
 }
 
@@ -74,6 +89,13 @@ impl Term for Chi2 {
     fn term(a: f64, b: f64) -> f64 {
         let total = a.abs() + b.abs();
         if total > 0.0 { (a - b) * (a - b) / total } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
+        let total = simd.add_f64s(simd.abs_f64s(a), simd.abs_f64s(b));
+        let zero = simd.splat_f64s(0.0);
+        simd.select_f64s(simd.greater_than_f64s(total, zero), simd.div_f64s(L2::terms(simd, a, b), total), zero)
     }
 }
 

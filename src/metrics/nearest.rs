@@ -36,38 +36,6 @@ impl Nearest {
         self.top.clear();
     }
 
-    /// Begins an empty list, to be filled by [`Nearest::offer`]; the sums are as they were.
-    #[inline(always)]
-    pub(crate) fn begin_list(&mut self, left_out: Option<usize>) {
-        self.left_out = left_out;
-        self.top.clear();
-    }
-
-    /// Takes an entry into the list if it is among the nearest `count`. False, and nothing done, once the list is full
-    /// and nothing at a distance of `least` or more belongs there.
-    #[inline(always)]
-    pub(crate) fn offer(&mut self, entry: (f64, u32), least: f64, count: usize) -> bool {
-        let len = self.top.len();
-        if len < count {
-            self.top.push(entry);
-            self.sift(len, entry);
-        } else {
-            let Some(&last) = self.top.last() else { return false };
-            if least > last.0 {
-                return false;
-            }
-            if before(entry, last) {
-                self.sift(len - 1, entry);
-            }
-        }
-        true
-    }
-
-    /// The list.
-    pub(crate) fn list(&self) -> &[(f64, u32)] {
-        &self.top
-    }
-
     /// How many models a list can hold at most.
     const fn available(&self) -> usize {
         self.models - self.left_out.is_some() as usize

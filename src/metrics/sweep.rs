@@ -1,8 +1,10 @@
 //! ε and mean ADR of the first k features, for every k in one pass.
 
+use std::marker::PhantomData;
+
 use rayon::prelude::*;
 
-use super::{Cancelled, Columns, Distance, Exam, Nearest, Recall, Term, by_distance};
+use super::{Cancelled, Columns, Distance, Exam, Nearest, Term, by_distance};
 use crate::watch::Watch;
 
 /// Columns between two looks at the watch.
@@ -37,16 +39,21 @@ pub fn sweep(exam: Exam<'_>, distance: Distance, watch: &dyn Watch) -> Result<Sw
 
 fn sweep_by<T: Term>(exam: Exam<'_>, watch: &dyn Watch) -> Result<Sweep, Cancelled> {
     let columns = Columns::new(exam.models());
-    let relevant = exam.relevant();
-    let recall = exam.recall();
+    let (relevant, recall) = (exam.relevant(), exam.recall());
     let nothing = || Tally { wrong: vec![0; columns.len()], recall: vec![0; columns.len()] };
     let start = || (nothing(), Nearest::new(exam.models().rows(), columns.stride()));
     let tally = (0..exam.len())
         .into_par_iter()
         .try_fold(start, |(mut tally, mut nearest), asked| {
-            let arch = pulp::Arch::new();
-            arch.dispatch(|| {
-                ask::<T>(exam, asked, relevant[asked], &recall, &columns, &mut nearest, &mut tally, watch)
+            pulp::Arch::new().dispatch(Ask::<T> {
+                exam,
+                asked,
+                weights: recall.weights(relevant[asked]),
+                columns: &columns,
+                watch,
+                nearest: &mut nearest,
+                tally: &mut tally,
+                term: PhantomData,
             })?;
             Ok((tally, nearest))
         })
@@ -63,36 +70,41 @@ fn sweep_by<T: Term>(exam: Exam<'_>, watch: &dyn Watch) -> Result<Sweep, Cancell
 }
 
 /// Adds the figures of one asked model to the tally.
-#[inline(always)]
-#[expect(clippy::too_many_arguments)]
-fn ask<T: Term>(
-    exam: Exam<'_>,
+struct Ask<'a, T> {
+    exam: Exam<'a>,
     asked: usize,
-    relevant: usize,
-    recall: &Recall,
-    columns: &Columns,
-    nearest: &mut Nearest,
-    tally: &mut Tally,
-    watch: &dyn Watch,
-) -> Result<(), Cancelled> {
-    let (row, label, labels) = (exam.row(asked), exam.label(asked), exam.labels());
-    let weights = recall.weights(relevant);
-    nearest.begin(exam.left_out(asked));
-    nearest.seed(relevant.max(1), []);
-    for (k, &value) in row.iter().enumerate().take(columns.len()) {
-        if k % POLL == 0 && watch.cancelled() {
-            return Err(Cancelled);
+    weights: &'a [u128],
+    columns: &'a Columns,
+    watch: &'a dyn Watch,
+    nearest: &'a mut Nearest,
+    tally: &'a mut Tally,
+    term: PhantomData<T>,
+}
+
+impl<T: Term> pulp::NullaryFnOnce for Ask<'_, T> {
+    type Output = Result<(), Cancelled>;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { exam, asked, weights, columns, watch, nearest, tally, .. } = self;
+        let (row, label, labels) = (exam.row(asked), exam.label(asked), exam.labels());
+        nearest.begin(exam.left_out(asked));
+        nearest.seed(weights.len().max(1), []);
+        for (k, &value) in row.iter().enumerate().take(columns.len()) {
+            if k % POLL == 0 && watch.cancelled() {
+                return Err(Cancelled);
+            }
+            for (sum, &other) in nearest.sums.iter_mut().zip(columns.col(k)) {
+                *sum += T::term(value, other);
+            }
+            let top = nearest.update();
+            let right = top.first().is_some_and(|&(_, model)| labels[model as usize] == label);
+            tally.wrong[k] += u32::from(!right);
+            let found = top.iter().zip(weights).filter(|((_, model), _)| labels[*model as usize] == label);
+            tally.recall[k] += found.map(|(_, &weight)| weight).sum::<u128>();
         }
-        for (sum, &other) in nearest.sums.iter_mut().zip(columns.col(k)) {
-            *sum += T::term(value, other);
-        }
-        let top = nearest.update();
-        let right = top.first().is_some_and(|&(_, model)| labels[model as usize] == label);
-        tally.wrong[k] += u32::from(!right);
-        let found = top.iter().zip(weights).filter(|((_, model), _)| labels[*model as usize] == label);
-        tally.recall[k] += found.map(|(_, &weight)| weight).sum::<u128>();
+        Ok(())
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -12,12 +12,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use self::{ground::Ground, judge::Judge, race::Race};
+use self::{block::LANES, ground::Ground, judge::Judge, race::Race};
 use crate::{
     metrics::{Cancelled, Distance, Sample, Term, by_distance},
     watch::Watch,
 };
 
+mod block;
 mod ground;
 mod judge;
 mod race;
@@ -94,13 +95,13 @@ fn climb_by<T: Term>(sample: &Sample, judge: &Judge<'_>, watch: &dyn Watch) -> R
         let moves = climb.steps.len();
         for forward in [true, false] {
             while let Some((lower, index)) = if forward {
-                race.run(&ground.outside(), loss, |index, bound| ground.with(index, judge, bound, watch))?
+                race.run(&ground.outside(), loss, LANES, |block, bound| ground.with(block, bound, watch))?
             } else {
-                race.run(ground.selected(), loss, |index, bound| ground.without(index, judge, bound, watch))?
+                race.run(ground.selected(), loss, 1, |block, bound| ground.without(block[0], bound, watch))?
             } {
                 loss = lower;
-                ground.toggle(index, judge);
-                climb.steps.push(Step { index, added: forward, cost: judge.cost(loss) });
+                ground.toggle(index);
+                climb.steps.push(Step { index, added: forward, cost: judge.cost_of(loss) });
             }
         }
         if climb.steps.len() == moves {

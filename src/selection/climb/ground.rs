@@ -2,28 +2,30 @@
 
 use std::marker::PhantomData;
 
+use pulp::Simd;
 use rayon::prelude::*;
 
 use super::{
+    block::{Block, LANES},
     judge::Judge,
     race::{Mark, Outcome},
 };
 use crate::{
-    metrics::{Cancelled, Columns, Nearest, Sample, Term},
+    metrics::{Cancelled, Columns, Features, Nearest, Sample, Term},
     watch::Watch,
 };
 
-/// Nearest models kept sorted for every model, at least.
-const HEAD: usize = 64;
+/// Strangers kept sorted for every model. A multiple of the chunks in which a [`Block`] counts them.
+pub(super) const HEAD: usize = 64;
 /// Models asked between two looks at the watch and at the bound.
 const POLL: usize = 16;
 
 /// What is known of one model under the selection.
-struct Row {
+pub(super) struct Row {
     /// Distance sums to all models; infinite for itself and for the padding.
-    sums: Vec<f64>,
-    /// The nearest models, ascending.
-    head: Vec<(f64, u32)>,
+    pub(super) sums: Vec<f64>,
+    /// The models of other classes: the nearest [`HEAD`] ascending, then the rest.
+    pub(super) strangers: Vec<(f64, u32)>,
     /// Its loss.
     loss: u128,
 }
@@ -31,6 +33,7 @@ struct Row {
 /// All training models under the selection.
 pub(super) struct Ground<'a, T> {
     sample: &'a Sample,
+    judge: &'a Judge<'a>,
     columns: Columns,
     /// In the order in which they were added, which is the order in which sums are built up: a sum does not depend on
     /// which candidates were tried.
@@ -43,20 +46,14 @@ pub(super) struct Ground<'a, T> {
 
 impl<'a, T: Term> Ground<'a, T> {
     /// Nothing is selected.
-    pub(super) fn new(sample: &'a Sample, judge: &Judge<'_>) -> Self {
+    pub(super) fn new(sample: &'a Sample, judge: &'a Judge<'a>) -> Self {
         let columns = Columns::new(&sample.train);
         let models = sample.train.rows();
-        let row = |_| Row { sums: vec![0.0; columns.stride()], head: Vec::new(), loss: 0 };
+        let row = |_| Row { sums: vec![0.0; columns.stride()], strangers: Vec::new(), loss: 0 };
         let rows = (0..models).map(row).collect();
-        let mut ground = Self {
-            sample,
-            columns,
-            selected: Vec::new(),
-            rows,
-            asked: (0..models as u32).collect(),
-            term: PhantomData,
-        };
-        ground.refresh(None, judge);
+        let asked = (0..models as u32).collect();
+        let mut ground = Self { sample, judge, columns, selected: Vec::new(), rows, asked, term: PhantomData };
+        ground.refresh(None);
         ground
     }
 
@@ -71,134 +68,235 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// Adds an index, or removes it if it is selected.
-    pub(super) fn toggle(&mut self, index: u32, judge: &Judge<'_>) {
+    pub(super) fn toggle(&mut self, index: u32) {
         let count = self.selected.len();
         self.selected.retain(|&selected| selected != index);
         if self.selected.len() < count {
-            self.refresh(None, judge);
+            self.refresh(None);
         } else {
             self.selected.push(index);
-            self.refresh(Some(index), judge);
+            self.refresh(Some(index));
         }
     }
 
     /// Brings the rows up to date: with one index added to what they hold, or from scratch.
-    fn refresh(&mut self, added: Option<u32>, judge: &Judge<'_>) {
-        let Self { sample, columns, selected, .. } = self;
-        let (models, features) = (sample.train.rows(), &sample.train);
+    fn refresh(&mut self, added: Option<u32>) {
+        let Self { sample, judge, columns, selected, .. } = self;
         self.rows.par_iter_mut().enumerate().for_each(|(model, row)| {
-            pulp::Arch::new().dispatch(|| {
-                let values = features.row(model);
-                if let Some(index) = added {
-                    add::<T>(&mut row.sums, columns, values, index);
-                } else {
-                    row.sums[..models].fill(0.0);
-                    row.sums[models..].fill(f64::INFINITY);
-                    row.sums[model] = f64::INFINITY;
-                    for &index in selected.iter() {
-                        add::<T>(&mut row.sums, columns, values, index);
-                    }
-                }
-            });
-            let others = (0..models).filter(|&other| other != model).map(|other| (row.sums[other], other as u32));
-            row.head.clear();
-            row.head.extend(others);
-            let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
-            let head = HEAD.max(2 * judge.looks_at(model));
-            if head < row.head.len() {
-                row.head.select_nth_unstable_by(head, order);
-                row.head.truncate(head);
-            }
-            row.head.sort_unstable_by(order);
-            row.loss = judge.loss(model, &row.head);
+            let (sums, features) = (&mut row.sums[..], &sample.train);
+            let refresh = Refresh::<T> { sums, columns, features, model, selected, added, term: PhantomData };
+            pulp::Arch::new().dispatch(refresh);
+            row.sort(model, judge);
         });
         let rows = &self.rows;
         self.asked.sort_unstable_by_key(|&model| (std::cmp::Reverse(rows[model as usize].loss), model));
     }
 
-    /// The loss with `index` added.
+    /// The losses with each of at most [`LANES`] indices added.
     pub(super) fn with(
         &self,
-        index: u32,
-        judge: &Judge<'_>,
+        indices: &[u32],
         bound: &dyn Fn() -> Mark,
         watch: &dyn Watch,
-    ) -> Result<Outcome, Cancelled> {
+    ) -> Result<Vec<Outcome>, Cancelled> {
+        if self.selected.is_empty() {
+            return indices.iter().map(|&index| self.alone(index, bound, watch)).collect();
+        }
+        let block = Block::new(&self.columns, indices, self.rows.len());
+        self.ask(indices, bound, watch, With { ground: self, block })
+    }
+
+    /// The loss with `index` alone.
+    fn alone(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+        let models = self.rows.len();
         let col = self.columns.col(index as usize - 1);
-        let by_value =
-            if self.selected.is_empty() { ByValue::new(&col[..self.rows.len()]) } else { ByValue::default() };
-        self.ask(index, bound, watch, |model, nearest| {
-            let count = judge.looks_at(model);
-            if self.selected.is_empty() {
-                nearest.begin(Some(model));
-                nearest.seed(count, by_value.around(model));
-                add_column::<T>(&mut nearest.sums, col, col[model]);
-                return judge.loss(model, nearest.update());
-            }
-            let row = &self.rows[model];
-            nearest.begin_list(Some(model));
-            for &(sum, other) in &row.head {
-                if !nearest.offer((sum + T::term(col[model], col[other as usize]), other), sum, count) {
-                    return judge.loss(model, nearest.list());
-                }
-            }
-            // The head did not reach far enough (or it is all there is).
-            nearest.sums.copy_from_slice(&row.sums);
-            add_column::<T>(&mut nearest.sums, col, col[model]);
-            judge.loss(model, nearest.update())
-        })
+        let nearest = Nearest::new(models, self.columns.stride());
+        let outcomes = self.ask(
+            &[index],
+            bound,
+            watch,
+            Alone { ground: self, col, by_value: ByValue::new(&col[..models]), nearest },
+        );
+        Ok(outcomes?[0])
     }
 
     /// The loss with `index` removed.
     pub(super) fn without(
         &self,
         index: u32,
-        judge: &Judge<'_>,
         bound: &dyn Fn() -> Mark,
         watch: &dyn Watch,
-    ) -> Result<Outcome, Cancelled> {
+    ) -> Result<Vec<Outcome>, Cancelled> {
         if self.selected.len() == 1 {
-            return Ok(Outcome::GivenUp(judge.worst() as f64));
+            return Ok(vec![Outcome::Whole(self.judge.worst())]);
         }
-        self.ask(index, bound, watch, |model, nearest| {
-            nearest.begin(Some(model));
-            for &other in self.selected.iter().filter(|&&other| other != index) {
-                add::<T>(&mut nearest.sums, &self.columns, self.sample.train.row(model), other);
-            }
-            nearest.seed(judge.looks_at(model), self.rows[model].head.iter().map(|&(_, other)| other));
-            judge.loss(model, nearest.update())
-        })
+        let rest = self.selected.iter().copied().filter(|&other| other != index).collect();
+        let nearest = Nearest::new(self.rows.len(), self.columns.stride());
+        self.ask(&[index], bound, watch, Without { ground: self, rest, nearest })
     }
 
-    /// Adds up the losses of all models asked, until they pass the bound.
-    #[inline(always)]
-    fn ask(
+    fn ask<M: Move>(
         &self,
-        index: u32,
+        indices: &[u32],
         bound: &dyn Fn() -> Mark,
         watch: &dyn Watch,
-        mut loss_of: impl FnMut(usize, &mut Nearest) -> u128,
-    ) -> Result<Outcome, Cancelled> {
-        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
-        let (mut loss, mut before) = (0, 0);
-        pulp::Arch::new().dispatch(|| {
-            for (at, models) in self.asked.chunks(POLL).enumerate() {
-                if watch.cancelled() {
-                    return Err(Cancelled);
-                }
-                for &model in models {
-                    loss += loss_of(model as usize, &mut nearest);
-                    before += self.rows[model as usize].loss;
-                }
-                if (loss, index) >= bound() {
-                    // Those not asked are taken to change as those asked did.
-                    let whole = self.rows.iter().map(|row| row.loss).sum::<u128>() as f64;
-                    let share = if before > 0 { before as f64 / whole } else { (at + 1) as f64 };
-                    return Ok(Outcome::GivenUp(loss as f64 / share));
-                }
+        of: M,
+    ) -> Result<Vec<Outcome>, Cancelled> {
+        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, watch, of })
+    }
+}
+
+/// A move that is tried, or several of a kind, one in each lane.
+trait Move {
+    /// Adds the losses of one model asked.
+    fn add_losses<S: Simd>(&mut self, simd: S, model: usize, losses: &mut [u128; LANES]);
+}
+
+/// Adding a block of candidates to what is selected.
+struct With<'a, T> {
+    ground: &'a Ground<'a, T>,
+    block: Block,
+}
+
+impl<T: Term> Move for With<'_, T> {
+    #[inline(always)]
+    fn add_losses<S: Simd>(&mut self, simd: S, model: usize, losses: &mut [u128; LANES]) {
+        self.block.add_losses::<T, S>(simd, model, &self.ground.rows[model], self.ground.judge, losses);
+    }
+}
+
+/// Selecting one feature alone.
+struct Alone<'a, T> {
+    ground: &'a Ground<'a, T>,
+    col: &'a [f64],
+    by_value: ByValue,
+    nearest: Nearest,
+}
+
+impl<T: Term> Move for Alone<'_, T> {
+    #[inline(always)]
+    fn add_losses<S: Simd>(&mut self, _: S, model: usize, losses: &mut [u128; LANES]) {
+        let Self { ground, col, by_value, nearest } = self;
+        nearest.begin(Some(model));
+        nearest.seed(ground.judge.looks_at(model), by_value.around(model));
+        add_column::<T>(&mut nearest.sums, col, col[model]);
+        losses[0] += ground.judge.loss(model, nearest.update());
+    }
+}
+
+/// Removing one feature, which leaves the rest.
+struct Without<'a, T> {
+    ground: &'a Ground<'a, T>,
+    rest: Vec<u32>,
+    nearest: Nearest,
+}
+
+impl<T: Term> Move for Without<'_, T> {
+    #[inline(always)]
+    fn add_losses<S: Simd>(&mut self, _: S, model: usize, losses: &mut [u128; LANES]) {
+        let Self { ground, rest, nearest } = self;
+        nearest.begin(Some(model));
+        for &index in rest.iter() {
+            add::<T>(&mut nearest.sums, &ground.columns, ground.sample.train.row(model), index);
+        }
+        let strangers = ground.rows[model].strangers.iter();
+        nearest.seed(ground.judge.looks_at(model), strangers.map(|&(_, other)| other));
+        losses[0] += ground.judge.loss(model, nearest.update());
+    }
+}
+
+/// Adds up the losses of all models asked for each of the candidates `indices`, until none of them can stay below the
+/// bound.
+struct Ask<'a, T, M> {
+    ground: &'a Ground<'a, T>,
+    indices: &'a [u32],
+    bound: &'a dyn Fn() -> Mark,
+    watch: &'a dyn Watch,
+    of: M,
+}
+
+impl<T, M: Move> pulp::WithSimd for Ask<'_, T, M> {
+    type Output = Result<Vec<Outcome>, Cancelled>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
+        let Ground { rows, asked, .. } = self.ground;
+        let (mut losses, mut before) = ([0; LANES], 0);
+        for models in asked.chunks(POLL) {
+            if self.watch.cancelled() {
+                return Err(Cancelled);
             }
-            Ok(Outcome::Lower(loss))
-        })
+            for &model in models {
+                self.of.add_losses(simd, model as usize, &mut losses);
+                before += rows[model as usize].loss;
+            }
+            let bound = (self.bound)();
+            let mut marks = self.indices.iter().zip(losses).map(|(&index, loss)| (loss, index));
+            if marks.all(|mark| mark >= bound) {
+                // Those not asked are taken to change as those asked did.
+                let whole = rows.iter().map(|row| row.loss).sum::<u128>();
+                let share = before.max(1) as f64 / whole.max(1) as f64;
+                let form = |loss: u128| Outcome::GivenUp(loss as f64 / share);
+                return Ok(losses.into_iter().take(self.indices.len()).map(form).collect());
+            }
+        }
+        Ok(losses.into_iter().take(self.indices.len()).map(Outcome::Whole).collect())
+    }
+}
+
+/// Brings the sums of one row up to date.
+struct Refresh<'a, T> {
+    sums: &'a mut [f64],
+    columns: &'a Columns,
+    features: &'a Features,
+    model: usize,
+    selected: &'a [u32],
+    added: Option<u32>,
+    term: PhantomData<T>,
+}
+
+impl<T: Term> pulp::NullaryFnOnce for Refresh<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { sums, columns, features, model, selected, added, .. } = self;
+        let values = features.row(model);
+        if let Some(index) = added {
+            add::<T>(sums, columns, values, index);
+            return;
+        }
+        sums[..features.rows()].fill(0.0);
+        sums[features.rows()..].fill(f64::INFINITY);
+        sums[model] = f64::INFINITY;
+        for &index in selected {
+            add::<T>(sums, columns, values, index);
+        }
+    }
+}
+
+impl Row {
+    /// Sorts the strangers of `model` by the sums as they are now, and works out its loss.
+    fn sort(&mut self, model: usize, judge: &Judge<'_>) {
+        let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        let models = || (0..judge.models()).map(|other| (self.sums[other as usize], other));
+        self.strangers.clear();
+        self.strangers.extend(models().filter(|&(_, other)| !judge.related(model, other)));
+        let mut top: Vec<_> = models().filter(|&(_, other)| judge.related(model, other)).collect();
+        top.retain(|&(_, other)| other as usize != model);
+        if HEAD < self.strangers.len() {
+            self.strangers.select_nth_unstable_by(HEAD, order);
+        }
+        let head = HEAD.min(self.strangers.len());
+        self.strangers[..head].sort_unstable_by(order);
+        // As many strangers as there are relatives are enough to know the rank of every relative that matters.
+        let enough = judge.looks_at(model);
+        if enough > head {
+            self.strangers.sort_unstable_by(order);
+        }
+        top.extend(self.strangers.iter().take(enough));
+        top.sort_unstable_by(order);
+        self.loss = judge.loss(model, &top);
     }
 }
 

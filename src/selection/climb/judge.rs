@@ -8,35 +8,68 @@ use crate::metrics::{Exam, Recall, Sample};
 pub(super) struct Judge<'a> {
     cost: Cost,
     exam: Exam<'a>,
-    relevant: Vec<usize>,
     recall: Recall,
+    /// By class: its training models.
+    members: Vec<Vec<u32>>,
 }
 
 impl<'a> Judge<'a> {
     pub(super) fn new(sample: &'a Sample, cost: Cost) -> Self {
         let exam = Exam::leave_one_out(sample);
-        Self { cost, exam, relevant: exam.relevant(), recall: exam.recall() }
+        let mut members = vec![Vec::new(); sample.classes];
+        for (model, &label) in (0..).zip(&sample.train_labels) {
+            members[label as usize].push(model);
+        }
+        Self { cost, exam, recall: exam.recall(), members }
+    }
+
+    pub(super) const fn cost(&self) -> Cost {
+        self.cost
+    }
+
+    /// How many models there are.
+    pub(super) fn models(&self) -> u32 {
+        self.exam.len() as u32
+    }
+
+    /// Whether a model is of the class of the model asked.
+    pub(super) fn related(&self, asked: usize, model: u32) -> bool {
+        self.exam.labels()[model as usize] == self.exam.label(asked)
+    }
+
+    /// The models of the same class, the model itself among them, ascending.
+    pub(super) fn class(&self, asked: usize) -> &[u32] {
+        &self.members[self.exam.label(asked) as usize]
+    }
+
+    /// How many models there are to find.
+    fn relevant(&self, asked: usize) -> usize {
+        self.class(asked).len() - 1
     }
 
     /// How many of the nearest models the cost looks at.
     pub(super) fn looks_at(&self, asked: usize) -> usize {
         match self.cost {
             Cost::Error => 1,
-            Cost::Adr => self.relevant[asked],
+            Cost::Adr => self.relevant(asked),
         }
     }
 
+    /// What a relevant model adds to the ADR of a model asked, by rank − 1, and what all of them add at best.
+    pub(super) fn weights(&self, asked: usize) -> (&[u128], u128) {
+        (self.recall.weights(self.relevant(asked)), self.recall.scale())
+    }
+
     /// The loss of one model asked, whose nearest models are `top`.
-    #[inline(always)]
     pub(super) fn loss(&self, asked: usize, top: &[(f64, u32)]) -> u128 {
-        let label = self.exam.label(asked);
-        let right = |entry: &(f64, u32)| self.exam.labels()[entry.1 as usize] == label;
+        let right = |entry: &(f64, u32)| self.related(asked, entry.1);
         match self.cost {
             Cost::Error => u128::from(!top.first().is_some_and(right)),
-            Cost::Adr if self.relevant[asked] == 0 => 0,
+            Cost::Adr if self.relevant(asked) == 0 => 0,
             Cost::Adr => {
-                let found = top.iter().zip(self.recall.weights(self.relevant[asked])).filter(|(entry, _)| right(entry));
-                self.recall.scale() - found.map(|(_, &weight)| weight).sum::<u128>()
+                let (weights, scale) = self.weights(asked);
+                let found = top.iter().zip(weights).filter(|(entry, _)| right(entry));
+                scale - found.map(|(_, &weight)| weight).sum::<u128>()
             }
         }
     }
@@ -50,7 +83,7 @@ impl<'a> Judge<'a> {
     }
 
     /// The cost of a total loss: ε or 1 − mean ADR.
-    pub(super) fn cost(&self, loss: u128) -> f64 {
+    pub(super) fn cost_of(&self, loss: u128) -> f64 {
         match self.cost {
             Cost::Error => loss as f64 / self.exam.len() as f64,
             Cost::Adr => 1.0 - self.recall.mean(self.recall.full() - loss),

@@ -13,9 +13,10 @@ use crate::metrics::Cancelled;
 pub(super) type Mark = (u128, u32);
 
 /// How far a candidate came.
+#[derive(Clone, Copy)]
 pub(super) enum Outcome {
-    /// Its total loss, below the bound.
-    Lower(u128),
+    /// Its total loss.
+    Whole(u128),
     /// Given up: it can't stay below the bound. The loss it would come to, roughly.
     GivenUp(f64),
 }
@@ -35,9 +36,17 @@ impl Race {
     }
 
     /// The candidate with the least loss below `loss`; of several the lowest index.
-    pub(super) fn run<F>(&self, candidates: &[u32], loss: u128, evaluate: F) -> Result<Option<Mark>, Cancelled>
+    ///
+    /// `evaluate` gets up to `together` candidates at once, and what is to be beaten; it returns an outcome for each.
+    pub(super) fn run<F>(
+        &self,
+        candidates: &[u32],
+        loss: u128,
+        together: usize,
+        evaluate: F,
+    ) -> Result<Option<Mark>, Cancelled>
     where
-        F: Fn(u32, &dyn Fn() -> Mark) -> Result<Outcome, Cancelled> + Sync,
+        F: Fn(&[u32], &dyn Fn() -> Mark) -> Result<Vec<Outcome>, Cancelled> + Sync,
     {
         // Index 0 comes before all: an equal loss is not below.
         let best = Mutex::new((loss, 0));
@@ -45,18 +54,22 @@ impl Race {
         let form = |index: u32| f64::from_bits(self.form[index as usize].load(Ordering::Relaxed));
         let mut order: Vec<(f64, u32)> = candidates.iter().map(|&index| (form(index), index)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let order: Vec<u32> = order.into_iter().map(|(_, index)| index).collect();
+        let blocks: Vec<&[u32]> = order.chunks(together).collect();
         let next = AtomicUsize::new(0);
         (0..rayon::current_num_threads()).into_par_iter().try_for_each(|_| {
-            while let Some(&(_, index)) = order.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let form = match evaluate(index, &|| *lock())? {
-                    Outcome::GivenUp(form) => form,
-                    Outcome::Lower(lower) => {
-                        let mut best = lock();
-                        *best = (*best).min((lower, index));
-                        lower as f64
-                    }
-                };
-                self.form[index as usize].store(form.to_bits(), Ordering::Relaxed);
+            while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                for (&index, outcome) in block.iter().zip(evaluate(block, &|| *lock())?) {
+                    let form = match outcome {
+                        Outcome::GivenUp(form) => form,
+                        Outcome::Whole(whole) => {
+                            let mut best = lock();
+                            *best = (*best).min((whole, index));
+                            whole as f64
+                        }
+                    };
+                    self.form[index as usize].store(form.to_bits(), Ordering::Relaxed);
+                }
             }
             Ok(())
         })?;
