@@ -5,12 +5,14 @@
 //! - `pool`: the threads that fill the library, outside of the database's revisions.
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.
+//! - `single`: the spectrum of a mesh file on its own, from the same library.
 //! - `inquiry`: a study on other threads; `host`: the owner of all of it; `trace`: what ran.
 
 pub use self::{
     answer::{Answer, ModelRow, ModelState, Part, Progress, Source, Stage, StageRow},
     host::{Cancelled, Config, Host},
     settings::{Parameter, Settings},
+    single::{Single, SingleError, Singles},
     trace::Query,
 };
 
@@ -27,5 +29,6 @@ mod library;
 mod pool;
 mod rows;
 mod settings;
+mod single;
 mod stamp;
 mod trace;

@@ -11,6 +11,7 @@
 //! | CSV | [`mod@csv`] | pandas, R, a spreadsheet |
 //! | JSON | [`mod@json`] | programs, and checks of every figure; its schema is stable |
 //!
+//! [`spectrum`] writes the eigenvalues of single meshes, also as the `.ev` file of ShapeDNA and LaPy.
 
 use std::io;
 
@@ -25,6 +26,7 @@ pub mod json;
 mod layout;
 pub mod markdown;
 mod plot;
+pub mod spectrum;
 pub mod text;
 
 #[cfg(test)]

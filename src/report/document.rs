@@ -291,6 +291,17 @@ pub struct StoreCounts {
     pub disk: usize,
 }
 
+impl StoreCounts {
+    /// Counts one more.
+    pub(crate) const fn add(&mut self, source: Source) {
+        match source {
+            Source::Ran => self.computed += 1,
+            Source::Memory => self.memory += 1,
+            Source::Disk => self.disk += 1,
+        }
+    }
+}
+
 /// What differs from run to run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Run {

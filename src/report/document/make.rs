@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     dataset::Role,
-    query::{Answer, ModelRow, ModelState, Source},
+    query::{Answer, ModelRow, ModelState},
     report::json,
     selection::Climb,
     study::{Climbed, FirstK},
@@ -39,7 +39,7 @@ impl Document {
                 triangles: row.size.map(|(_, triangles)| triangles),
                 measure: row.measure,
                 eigenvalues: used(row, settings.kmax),
-                decided: decided.get(&at).map(|&class| class_name(class)),
+                decided: decided.get(&at).and_then(|&class| answer.classes.get(class as usize).cloned()),
                 defects: row.defects.to_vec(),
             })
             .collect();
@@ -190,11 +190,7 @@ fn run(answer: &Answer, origin: &Origin<'_>) -> Run {
     let mut models = Vec::new();
     for row in answer.models.iter() {
         if let ModelState::Ready { source, seconds, .. } = row.state {
-            match source {
-                Source::Ran => counts.computed += 1,
-                Source::Memory => counts.memory += 1,
-                Source::Disk => counts.disk += 1,
-            }
+            counts.add(source);
             models.push(RunModel { name: row.name.clone(), source, seconds });
         }
     }

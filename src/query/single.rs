@@ -1,0 +1,116 @@
+//! The spectrum of a mesh file on its own: what a study does for each of its models.
+
+use std::{path::Path, sync::Arc, time::Instant};
+
+use super::{
+    Source,
+    library::{FileAt, Library, Missing},
+    stamp::Stamp,
+    trace::Trace,
+};
+use crate::{
+    mesh::{self, Format, GeometryHash, Survey},
+    spectrum::{self, Choice, Spectrum, SpectrumError},
+    store::Store,
+    watch::Watch,
+};
+
+/// A mesh file's spectrum, with what is known of the mesh.
+#[derive(Debug, Clone)]
+pub struct Single {
+    /// Hash of the canonical geometry.
+    pub geometry: GeometryHash,
+    /// Sizes, topology and defects.
+    pub survey: Survey,
+    /// At least as many eigenvalues as were asked for, or all there are.
+    pub spectrum: Arc<Spectrum>,
+    /// Where the spectrum came from.
+    pub source: Source,
+    /// How long the solve took, seconds; 0 when none ran.
+    pub seconds: f64,
+}
+
+/// Why there is none.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SingleError {
+    /// The watch said so.
+    #[error("interrupted")]
+    Cancelled,
+    /// The file cannot be read, or its mesh has no spectrum; in one line, without the file's name.
+    #[error("{0}")]
+    Failed(String),
+}
+
+/// Solves single files, any number at once; with a store, as a study would, so that each profits from the other.
+#[derive(Debug)]
+pub struct Singles {
+    library: Option<Library>,
+}
+
+impl Singles {
+    /// Keeps spectra in `store`, or nowhere.
+    #[must_use]
+    pub fn new(store: Option<Store>) -> Self {
+        Self { library: store.map(|store| Library::open(store, Trace::default(), Path::new(""))) }
+    }
+
+    /// The first `count` eigenvalues, or more, of the mesh in the file at `path`.
+    ///
+    /// # Errors
+    /// [`SingleError`].
+    pub fn solve(&self, path: &Path, choice: Choice, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
+        let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
+        let format = Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl"))?;
+        let Some(library) = &self.library else {
+            return solve_alone(path, format, choice, count, watch);
+        };
+        let stamp = match std::fs::metadata(path) {
+            Ok(metadata) if metadata.is_dir() => return Err(failed(&"a folder, not a mesh")),
+            Ok(_) => Stamp::of(path),
+            Err(error) => return Err(failed(&format!("cannot be read: {error}"))),
+        };
+        let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
+        let content = library.content(path, stamp).map_err(|reason| failed(&reason))?;
+        let file = FileAt { path, format, content };
+        let facts = library.facts(file).map_err(|reason| failed(&reason))?;
+        let found = library.spectrum(file, &facts, choice, count, watch).map_err(|missing| match missing {
+            Missing::Cancelled => SingleError::Cancelled,
+            Missing::Failed(reason) => failed(&reason),
+        })?;
+        Ok(Single {
+            geometry: facts.geometry,
+            survey: facts.survey.clone(),
+            spectrum: found.spectrum,
+            source: found.source,
+            seconds: found.seconds,
+        })
+    }
+}
+
+/// The same without a store.
+fn solve_alone(
+    path: &Path,
+    format: Format,
+    choice: Choice,
+    count: usize,
+    watch: &dyn Watch,
+) -> Result<Single, SingleError> {
+    let start = Instant::now();
+    let bytes = std::fs::read(path).map_err(|error| SingleError::Failed(format!("cannot be read: {error}")))?;
+    let mesh = mesh::read(&bytes, format).map_err(|error| SingleError::Failed(error.to_string()))?;
+    let survey = mesh::survey(&mesh);
+    if let Some(reason) = survey.refusal() {
+        return Err(SingleError::Failed(reason));
+    }
+    let spectrum = spectrum::solve(&mesh.canonical(), choice, count, &[], watch).map_err(|error| match error {
+        SpectrumError::Cancelled { .. } => SingleError::Cancelled,
+        error => SingleError::Failed(error.to_string()),
+    })?;
+    Ok(Single {
+        geometry: mesh.hash(),
+        survey,
+        spectrum: Arc::new(spectrum),
+        source: Source::Ran,
+        seconds: start.elapsed().as_secs_f64(),
+    })
+}
