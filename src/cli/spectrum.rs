@@ -1,0 +1,177 @@
+//! `tui spectrum`: the eigenvalues of single meshes.
+
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use rayon::prelude::*;
+
+use super::{
+    args::{SpectrumArguments, SpectrumFormat},
+    exit::{Exit, Failure, complain},
+    interrupt::Interrupt,
+    output,
+    progress::Progress,
+    study,
+};
+use crate::{
+    query::{Single, SingleError, Singles},
+    report::spectrum::{Failed, MeshSpectrum, Spectra, ev},
+    spectrum::Choice,
+    store,
+    watch::Watch,
+};
+
+/// Runs `tui spectrum`.
+pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
+    let out = arguments.out.as_deref();
+    let format = arguments.format.or_else(|| out.and_then(format_of)).unwrap_or(SpectrumFormat::Text);
+    let several = arguments.meshes.len() > 1;
+    if format == SpectrumFormat::Ev && several && out.is_none() {
+        return Err(Failure::Usage(
+            "an .ev file holds one spectrum; for several meshes name a folder by --out".to_owned(),
+        ));
+    }
+    if let Some(out) = out {
+        output::check(out)?;
+    }
+    let interrupt = Interrupt::listen().map_err(|error| Failure::caused("Ctrl-C cannot be listened to", error))?;
+
+    let store =
+        (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], arguments.cache.as_deref())));
+    let singles = Singles::new(store.clone());
+    let choice = Choice::new(arguments.operator.into(), arguments.mass.into());
+    let solved = solve(&singles, arguments, choice, interrupt)?;
+
+    let mut spectra = Spectra::new();
+    for (path, solved) in arguments.meshes.iter().zip(solved) {
+        let file = path.display().to_string();
+        match solved {
+            Ok(Single { geometry, survey, spectrum, source, seconds }) => {
+                let spectrum = MeshSpectrum::new(file, geometry, &survey, choice, &spectrum, arguments.count);
+                if spectrum.eigenvalues.len() < arguments.count {
+                    complain(&format!(
+                        "{}: the mesh has {} eigenvalues, fewer than the {} asked for",
+                        spectrum.file, spectrum.order, arguments.count
+                    ));
+                }
+                spectra.push(spectrum, source, seconds);
+            }
+            Err(SingleError::Failed(reason)) => {
+                complain(&format!("{file}: {reason}"));
+                spectra.failed.push(Failed { file, reason });
+            }
+            Err(SingleError::Cancelled) => {
+                return Err(Failure::Interrupted(if arguments.no_cache {
+                    "interrupted".to_owned()
+                } else {
+                    "interrupted; finished spectra are kept".to_owned()
+                }));
+            }
+        }
+    }
+    store.iter().for_each(study::warn_of_store);
+    deliver(&spectra, format, out, several)?;
+    Ok(if spectra.failed.is_empty() { Exit::Done } else { Exit::Failed })
+}
+
+/// Solves the meshes on a pool of threads; the results are in the order of the command line.
+fn solve(
+    singles: &Singles,
+    arguments: &SpectrumArguments,
+    choice: Choice,
+    interrupt: Interrupt,
+) -> Result<Vec<Result<Single, SingleError>>, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(study::threads(arguments.threads))
+        .build()
+        .map_err(|error| Failure::caused("threads cannot be started", error))?;
+    let count = arguments.count;
+    if let [mesh] = &arguments.meshes[..] {
+        let watch = Progress::new("eigenvalues", "eigenvalues", interrupt);
+        return Ok(vec![pool.install(|| singles.solve(mesh, choice, count, &watch))]);
+    }
+    let watch = Progress::new("meshes", "meshes", interrupt);
+    let (done, total) = (AtomicUsize::new(0), arguments.meshes.len());
+    watch.progress(0, total);
+    Ok(pool.install(|| {
+        let solve = |mesh: &PathBuf| {
+            if watch.cancelled() {
+                return Err(SingleError::Cancelled);
+            }
+            let solved = singles.solve(mesh, choice, count, &Quiet(&watch));
+            watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+            solved
+        };
+        arguments.meshes.par_iter().map(solve).collect()
+    }))
+}
+
+/// Passes on that a solve is cancelled, but not its progress: the bar counts meshes.
+struct Quiet<'a>(&'a Progress);
+
+impl Watch for Quiet<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}
+
+/// The cache: the one that is named; else that of the data set the mesh belongs to, which is one to three folders up;
+/// else the user's.
+fn place(mesh: &Path, given: Option<&Path>) -> PathBuf {
+    let absolute = std::path::absolute(mesh).unwrap_or_else(|_| mesh.to_owned());
+    let roots = || absolute.ancestors().skip(1).take(3);
+    let beside = roots().find(|root| root.parent().is_some_and(|parent| parent.join("cache").is_dir()));
+    store::locate(beside.or_else(|| roots().next()).unwrap_or(mesh), given)
+}
+
+fn deliver(spectra: &Spectra, format: SpectrumFormat, out: Option<&Path>, several: bool) -> Result<(), Failure> {
+    let failed = |error| Failure::caused("the spectra cannot be written", error);
+    let mut bytes = Vec::new();
+    match format {
+        SpectrumFormat::Text => bytes = spectra.text().into_bytes(),
+        SpectrumFormat::Csv => spectra.write_csv(&mut bytes).map_err(failed)?,
+        SpectrumFormat::Json => spectra.write_json(&mut bytes).map_err(failed)?,
+        SpectrumFormat::Ev => match out {
+            Some(folder) if several || folder.is_dir() => return output::save_all(folder, &ev_files(spectra)),
+            _ => bytes = spectra.spectra.iter().map(ev).collect::<String>().into_bytes(),
+        },
+    }
+    // A file without a spectrum would look like a result.
+    if spectra.spectra.is_empty() && matches!(format, SpectrumFormat::Text | SpectrumFormat::Ev) {
+        return Ok(());
+    }
+    out.map_or_else(|| output::print(&bytes), |file| output::save(file, &bytes))
+}
+
+/// A file for each spectrum, named like its mesh; `-2`, `-3`, … tell equal names apart.
+fn ev_files(spectra: &Spectra) -> Vec<(String, Vec<u8>)> {
+    let mut taken = HashSet::new();
+    let name = |spectrum: &MeshSpectrum| {
+        let stem =
+            Path::new(&spectrum.file).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let mut name = format!("{stem}.ev");
+        let mut number = 2;
+        while !taken.insert(name.clone()) {
+            name = format!("{stem}-{number}.ev");
+            number += 1;
+        }
+        name
+    };
+    let names: Vec<String> = spectra.spectra.iter().map(name).collect();
+    names.into_iter().zip(&spectra.spectra).map(|(name, spectrum)| (name, ev(spectrum).into_bytes())).collect()
+}
+
+/// The format that a file's name asks for.
+fn format_of(out: &Path) -> Option<SpectrumFormat> {
+    let ending = out.extension()?.to_str()?.to_ascii_lowercase();
+    match ending.as_str() {
+        "txt" => Some(SpectrumFormat::Text),
+        "csv" => Some(SpectrumFormat::Csv),
+        "json" => Some(SpectrumFormat::Json),
+        "ev" => Some(SpectrumFormat::Ev),
+        _ => None,
+    }
+}
