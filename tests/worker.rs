@@ -42,7 +42,7 @@ fn spawn(setup: Setup) -> (Worker, mpsc::Receiver<Update>) {
 
 /// The first answer for which `right` holds.
 fn wait_for(updates: &mpsc::Receiver<Update>, right: impl Fn(&Answer) -> bool) -> Arc<Answer> {
-    let deadline = Instant::now() + Duration::from_secs(60);
+    let deadline = Instant::now() + Duration::from_mins(1);
     loop {
         match updates.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
             Ok(Update::Answer(answer)) if right(&answer) => return answer,
@@ -125,7 +125,7 @@ fn ends_at_once_in_the_middle_of_a_run() {
     let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
     common::write_data(&data, 3, 8);
     let (worker, updates) = spawn(setup(&data, &cache, &small()));
-    drop(updates.recv_timeout(Duration::from_secs(60)).unwrap());
+    drop(updates.recv_timeout(Duration::from_mins(1)).unwrap());
     let start = Instant::now();
     drop(worker);
     assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
@@ -135,7 +135,7 @@ fn ends_at_once_in_the_middle_of_a_run() {
 fn a_folder_that_is_not_there_is_told() {
     let folder = common::scratch();
     let (_worker, updates) = spawn(setup(&folder.path().join("nowhere"), folder.path(), &small()));
-    match updates.recv_timeout(Duration::from_secs(60)).unwrap() {
+    match updates.recv_timeout(Duration::from_mins(1)).unwrap() {
         Update::Fatal(reason) => assert!(reason.contains("nowhere"), "{reason}"),
         Update::Answer(_) => panic!("an answer from nowhere"),
     }

@@ -12,15 +12,9 @@ use super::{
     study::Study,
 };
 use crate::{
-    terminal::{self, Engine, Opening},
-    workbench::{Command, worker::Worker},
+    terminal::{self, Opening},
+    workbench::worker::Worker,
 };
-
-impl Engine for Worker {
-    fn send(&self, command: Command) {
-        Self::send(self, command);
-    }
-}
 
 /// Opens the data set.
 pub(super) fn run(root: &Path, arguments: &StudyArguments) -> Result<Exit, Failure> {
