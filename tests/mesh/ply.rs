@@ -93,8 +93,9 @@ fn cut_anywhere_it_is_refused() {
 }
 
 #[test]
-fn a_header_line_that_is_none_is_passed_over() {
+fn a_header_line_that_is_none_and_values_that_no_header_declares_are_passed_over() {
     let text = String::from_utf8(write::ply_ascii(&tetrahedron())).unwrap();
+    assert_eq!(mesh(&text.replace("0 1 0\n", "0 1 0 8 9\n").replace("3 1 2 3", "3 1 2 3 6 0 0"), Ply), tetrahedron());
     let text = text.replace("comment test", "Created by an old exporter");
     assert_eq!(mesh(&text, Ply), tetrahedron());
 }
@@ -123,7 +124,7 @@ fn refusals_name_the_place_and_the_values() {
     assert_eq!(with("3 1 2 3", "3 1 2 -1"), "face 2 (line 17) names vertex -1, but there are 4 (counted from 0)");
     assert_eq!(with("0 1 0", "0 inf 0"), "vertex 2 (line 13; counted from 0) has a coordinate that is not finite: inf");
     assert_eq!(with("0 1 0", "0 x 0"), "line 13: vertex 2 (counted from 0) has \"x\" where a number should be");
-    assert_eq!(with("0 1 0", "0 1 0 8"), "line 13: vertex 2 (counted from 0) has \"8\" after its last value");
+    assert_eq!(with("0 1 0", "0 1"), "line 13: vertex 2 (counted from 0) has too few values on its line");
     assert_eq!(
         with("element face 4", "element face 5"),
         "the file ends in face 4 (counted from 0), line 19: 5 of face were announced"

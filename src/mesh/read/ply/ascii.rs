@@ -64,10 +64,11 @@ fn record(text: &mut Text<'_>, element: &Element, number: usize, parts: &mut Par
         }
         parts.vertices.push(position);
     }
-    // A record may run over several lines; more on a line than the header declares is another file's header.
-    if let Some(word) = text.word_on_line() {
-        let defect = format!("{} has {} after its last value", inside(element, number), quoted(word));
-        return Err(ReadError::Malformed { place: Place::Line(text.line()), defect });
+    // Some exporters write more on a line than their header declares. But a record that ran over several lines must end
+    // with a line, or else it took what belongs to the next.
+    if text.line() != line && text.word_on_line().is_some() {
+        let defect = format!("{} has too few values on its line", inside(element, number));
+        return Err(ReadError::Malformed { place: Place::Line(line), defect });
     }
     text.next_line();
     Ok(())
