@@ -156,7 +156,7 @@ fn plot(curve: &Curve, best: usize, k: usize, logarithmic: bool) -> Plot {
     }
     Plot {
         x: Axis::indices(curve.train.len(), logarithmic),
-        y: Axis::around(curve.train.iter().chain(&curve.query).copied()),
+        y: Axis::ratios(curve.train.iter().chain(&curve.query).copied()),
         series: vec![
             Series { points: points(&curve.query), role: Role::Query, stroke: Stroke::Dotted, plain: '.' },
             Series { points: points(&curve.train), role: Role::Train, stroke: Stroke::Solid, plain: '#' },

@@ -208,7 +208,7 @@ fn summary(model: &ModelRow, long: bool) -> String {
         }
         ModelState::Ready { source: from, count, seconds } => {
             let how = match from {
-                Source::Ran => format!("solved in {}", number::seconds(*seconds)),
+                Source::Ran => format!("in {}", number::seconds(*seconds)),
                 Source::Memory => "from memory".to_owned(),
                 Source::Disk => "from disk".to_owned(),
             };

@@ -65,6 +65,17 @@ impl Axis {
         Self::linear((low / step).floor() * step, (high / step).ceil() * step)
     }
 
+    /// As [`Axis::around`] for values that lie between 0 and 1, and where 0 and 1 mean something.
+    pub(super) fn ratios(values: impl IntoIterator<Item = f64> + Clone) -> Self {
+        let mut finite = values.clone().into_iter().filter(|v| v.is_finite());
+        let first = finite.next();
+        if first.is_none_or(|first| finite.all(|v| v == first)) {
+            return Self::linear(0.0, 1.0);
+        }
+        let axis = Self::around(values);
+        Self { low: axis.low.max(0.0), high: axis.high.min(1.0), ..axis }
+    }
+
     /// Where a value lies, 0 at the low end and 1 at the high end.
     pub(super) fn place(&self, value: f64) -> f64 {
         if self.logarithmic {
@@ -256,6 +267,8 @@ mod tests {
         assert_eq!(Axis::around([]), Axis::linear(0.0, 1.0));
         let flat = Axis::around([0.5, 0.5]);
         assert!(flat.low < 0.5 && flat.high > 0.5);
+        assert_eq!(Axis::ratios([0.9, 0.9]), Axis::linear(0.0, 1.0));
+        assert_eq!(Axis::ratios([0.01, 1.0]), Axis::linear(0.0, 1.0));
         let zero = Axis::around([0.0]);
         assert!(zero.low < 0.0 && zero.high > 0.0);
     }

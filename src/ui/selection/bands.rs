@@ -1,7 +1,7 @@
 //! Figure 5: the selected bands along the spectrum, a column per class.
 //!
 //! Each cell is as dense as the weight that falls into it: the sum of α over the selected intervals, each in
-//! proportion to how much of the cell it covers. Thin intervals stay visible, and heavy ones stand out without colour.
+//! proportion to how much of the cell it covers, against the class's heaviest cell. Thin intervals stay visible, and heavy ones stand out without colour.
 
 use ratatui::layout::Rect;
 
@@ -27,7 +27,6 @@ pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
     side(&axis, pane, height);
     let weights: Vec<Vec<f64>> =
         marks.iter().skip(first).take(count).map(|marks| weights(&axis, marks, height as usize)).collect();
-    let most = weights.iter().flatten().copied().fold(f64::MIN_POSITIVE, f64::max);
     for (place, column) in weights.iter().enumerate() {
         let class = first + place;
         let x = GUTTER + place as u16 * step;
@@ -38,6 +37,8 @@ pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
             _ => Role::Plain,
         };
         let wide = (step - 1).max(1);
+        // A class that one eigenvalue alone tells from all others would leave the rest pale: each has its own scale.
+        let most = column.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         for (row, weight) in column.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
             let level = (weight / most).sqrt() * SHADES.len() as f64;
             let shade = SHADES[(level as usize).min(SHADES.len() - 1)];

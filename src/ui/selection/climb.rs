@@ -73,7 +73,7 @@ fn way(costs: impl Iterator<Item = f64>) -> Plot {
     let mark = |&at: &(f64, f64)| plot::Mark { at, character: '●', role: Role::Strong };
     Plot {
         x: Axis::indices(points.len(), false),
-        y: Axis::around(points.iter().map(|(_, cost)| *cost)),
+        y: Axis::ratios(points.iter().map(|(_, cost)| *cost)),
         marks: points.iter().map(mark).collect(),
         series: vec![Series { points, role: Role::Train, stroke: Stroke::Solid, plain: '#' }],
         guide: None,
