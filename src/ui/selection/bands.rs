@@ -1,7 +1,8 @@
 //! Figure 5: the selected bands along the spectrum, a column per class.
 //!
 //! Each cell is as dense as the weight that falls into it: the sum of α over the selected intervals, each in
-//! proportion to how much of the cell it covers, against the class's heaviest cell. Thin intervals stay visible, and heavy ones stand out without colour.
+//! proportion to how much of the cell it covers, against the class's heaviest cell. Thin intervals stay visible, and
+//! heavy ones stand out without colour.
 
 use ratatui::layout::Rect;
 
