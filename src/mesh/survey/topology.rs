@@ -59,8 +59,7 @@ impl Sets {
 /// Records defects of edges, vertices and components. `sound` are triangles of three different vertices below
 /// `vertices`, with their numbers.
 pub(super) fn look(vertices: usize, sound: &[(u32, [u32; 3])], defects: &mut Vec<Defect>) -> Topology {
-    let mut sides = sides(sound);
-    sides.sort_unstable_by_key(|side| (side.edge, side.corner));
+    let sides = sides(vertices, sound);
     let groups: Vec<&[Side]> = sides.chunk_by(|a, b| a.edge == b.edge).collect();
     let spot = |group: &&[Side]| Spot::Edge(group[0].edge.0, group[0].edge.1);
 
@@ -103,14 +102,34 @@ pub(super) fn look(vertices: usize, sound: &[(u32, [u32; 3])], defects: &mut Vec
     Topology { components, boundary_edges, boundary_loops, euler, genus, oriented }
 }
 
-fn sides(sound: &[(u32, [u32; 3])]) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(3 * sound.len());
-    for (place, &(_, [a, b, c])) in (0..).zip(sound) {
-        for (i, (from, to)) in (0..).zip([(a, b), (b, c), (c, a)]) {
-            let ascending = from < to;
-            let edge = if ascending { (from, to) } else { (to, from) };
-            sides.push(Side { edge, corner: 3 * place + i, ascending });
-        }
+/// All sides, ascending by edge and then by triangle: counted out by their smaller vertex, which leaves a few each to
+/// sort.
+fn sides(vertices: usize, sound: &[(u32, [u32; 3])]) -> Vec<Side> {
+    let all = || {
+        (0..).zip(sound).flat_map(|(place, &(_, [a, b, c]))| {
+            [(0, a, b), (1, b, c), (2, c, a)].map(|(i, from, to)| {
+                let ascending = from < to;
+                let edge = if ascending { (from, to) } else { (to, from) };
+                Side { edge, corner: 3 * place + i, ascending }
+            })
+        })
+    };
+    let mut ends = vec![0usize; vertices + 1];
+    for side in all() {
+        ends[side.edge.0 as usize + 1] += 1;
+    }
+    for vertex in 0..vertices {
+        ends[vertex + 1] += ends[vertex];
+    }
+    let mut sides = vec![Side { edge: (0, 0), corner: 0, ascending: false }; 3 * sound.len()];
+    // From here on, where the next side of each vertex goes; at last, where its sides end.
+    for side in all() {
+        let next = &mut ends[side.edge.0 as usize];
+        sides[*next] = side;
+        *next += 1;
+    }
+    for of_vertex in sides.chunk_by_mut(|a, b| a.edge.0 == b.edge.0) {
+        of_vertex.sort_unstable_by_key(|side| (side.edge.1, side.corner));
     }
     sides
 }
