@@ -1,6 +1,6 @@
 //! Mesh → stiffness matrix L and mass matrix B.
 //!
-//! [`assemble`] takes any triangle list: closed or with a boundary (natural, so Neumann, conditions), of one piece or
+//! [`assemble()`] takes any triangle list: closed or with a boundary (natural, so Neumann, conditions), of one piece or
 //! many, manifold or not, consistently oriented or not. Every triangle adds the positive semi-definite matrix of its
 //! own metric, so L is positive semi-definite whatever the connectivity, and its kernel has one dimension per
 //! connected component. What cannot be taken as it is (a repeated face, a face without area) is mended locally, and

@@ -1,7 +1,7 @@
 //! The salsa database that memoises the pipeline, the pool that feeds it, and the host that owns both.
 //!
-//! - `stamp`, `library`: what is costly (content hashes, facts of meshes, spectra) is a pure function of its key, kept in
-//!   memory and in the store.
+//! - `stamp`, `library`: what is costly (content hashes, facts of meshes, spectra) is a pure function of its key, kept
+//!   in memory and in the store.
 //! - `pool`: the threads that fill the library, outside of the database's revisions.
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.

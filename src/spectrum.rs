@@ -1,6 +1,6 @@
 //! (L, B) → the first eigenvalues, certified complete.
 //!
-//! [`solve`] walks up the λ axis from shift to shift. At each shift σ a sparse factorisation L − σB = M D Mᵀ counts
+//! [`solve()`] walks up the λ axis from shift to shift. At each shift σ a sparse factorisation L − σB = M D Mᵀ counts
 //! the eigenvalues below it: they are as many as D has negative entries (Sylvester). A block Lanczos process with the
 //! same factor finds those near the shift on both sides. The eigenvalues between two shifts come from the process at
 //! the lower and the process at the upper one, and they are accepted only when their number is the difference of the
@@ -192,10 +192,10 @@ pub fn solve(
     solve_laplacian(&laplacian, count, known, watch)
 }
 
-/// [`solve`] for matrices that are assembled already.
+/// [`solve()`] for matrices that are assembled already.
 ///
 /// # Errors
-/// As [`solve`].
+/// As [`solve()`].
 pub fn solve_laplacian(
     laplacian: &Laplacian,
     count: usize,

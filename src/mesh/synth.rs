@@ -1,7 +1,7 @@
 //! Procedural shapes: closed meshes of recognisable classes, the same bytes for the same options everywhere.
 //!
 //! A class is a solid with joints and proportions drawn at random ([`shapes`]); its distance field ([`solid`]) is
-//! polygonised ([`polygonise`]), the genus is checked, and the surface is re-meshed to the wanted number of vertices
+//! polygonised ([`polygonise()`]), the genus is checked, and the surface is re-meshed to the wanted number of vertices
 //! in one of several manners ([`remesh`], [`sizing`]). All arithmetic is exact IEEE ([`vector`]) and all chance comes
 //! from blake3 ([`random`]), so that a model depends on the seed, its class, its index and the number of vertices,
 //! and on nothing else.

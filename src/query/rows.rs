@@ -1,8 +1,9 @@
 //! The functions above the pipeline that read the parameters and cut what is memoised to what is shown.
 //!
 //! A smaller kmax, another k and fewer rounds T are slices of results that are there: the first-k curves are prefixes,
-//! a hill climbing that never touched an index above kmax is the hill climbing at kmax, and the first rounds of AdaBoost
-//! are a run of that length. Only [`Normalisation::Max`](crate::spectrum::Normalisation::Max) changes every feature with kmax.
+//! a hill climbing that never touched an index above kmax is the hill climbing at kmax, and the first rounds of
+//! AdaBoost are a run of that length. Only [`Normalisation::Max`](crate::spectrum::Normalisation::Max) changes every
+//! feature with kmax.
 
 use std::sync::Arc;
 

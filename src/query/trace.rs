@@ -86,7 +86,8 @@ impl Trace {
         value
     }
 
-    /// Runs `body`, which cuts a result of `stage` to what is shown: its time counts there, the stage itself did not run.
+    /// Runs `body`, which cuts a result of `stage` to what is shown: its time counts there, the stage itself did not
+    /// run.
     pub(crate) fn cut<T>(&self, query: Query, stage: Stage, body: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let value = body();

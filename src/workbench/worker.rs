@@ -1,7 +1,7 @@
 //! The thread that owns the host, so that the screen's never waits.
 //!
-//! Commands go in, answers come out; of several settings in the queue the newest wins. While spectra are being solved the
-//! study is made again and again on the models that are there.
+//! Commands go in, answers come out; of several settings in the queue the newest wins. While spectra are being solved
+//! the study is made again and again on the models that are there.
 
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},

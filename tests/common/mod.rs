@@ -68,8 +68,8 @@ pub fn write_data(root: &Path, classes: usize, models: usize) -> Vec<PathBuf> {
     files
 }
 
-/// A temporary folder, in memory where the system has such a place: a store waits for the disk at every write, and tests
-/// of other things than the disk make thousands of them.
+/// A temporary folder, in memory where the system has such a place: a store waits for the disk at every write, and
+/// tests of other things than the disk make thousands of them.
 pub fn scratch() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }

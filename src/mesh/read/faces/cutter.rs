@@ -53,8 +53,9 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// Turns the ring so that it begins at the corner that is least by (x, y, z), as [`Mesh::canonical`] sorts:
-    /// what follows then depends on the shape, not on where the file begins the polygon.
+    /// Turns the ring so that it begins at the corner that is least by (x, y, z), as
+    /// [`Mesh::canonical`](crate::mesh::Mesh::canonical) sorts: what follows then depends on the shape, not on where
+    /// the file begins the polygon.
     fn begin_at_least_position(&mut self) {
         /// Corners looked at where several have the least position; a bound, for a hostile ring may have that one only.
         const LOOK: usize = 8;
