@@ -64,8 +64,8 @@ fn time(name: &str, run: impl Fn() -> String) {
     println!("    {name:<18} {:8.2} ms   {said}", least.as_secs_f64() * 1e3);
 }
 
-/// Spectra that grow linearly, bent by class, pose and noise, and divided by their last value. They are about as hard to
-/// tell apart as those of SHREC 2007.
+/// Spectra that grow linearly, bent by class, pose and noise, and divided by their last value. They are about as hard
+/// to tell apart as those of SHREC 2007.
 fn synthetic() -> Sample {
     const CLASSES: u32 = 19;
     const COLS: u32 = 500;

@@ -183,8 +183,8 @@ impl Block {
         }
     }
 
-    /// Drops the relatives that have at least `first` models before them in every lane. Returns the greatest distance of
-    /// any that have fewer.
+    /// Drops the relatives that have at least `first` models before them in every lane. Returns the greatest distance
+    /// of any that have fewer.
     #[inline(always)]
     fn drop_beyond<S: Simd>(&mut self, simd: S, first: u64) -> f64 {
         let mut reach = -1.0;
