@@ -1,5 +1,7 @@
 //! The program as its users meet it: the real binary, its output, its exit codes.
 
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
 #[path = "cli/room.rs"]
 mod room;
 
@@ -95,6 +97,17 @@ fn a_study_with_one_broken_mesh_completes_and_names_it() {
     let head = |text: &str| text.split("\nThis run\n").next().unwrap().to_owned();
     assert_eq!(head(&plain.out), head(&report.out));
     assert!(plain.out.contains("spectra  0 computed, 0 from memory, 12 from disk"), "{}", plain.out);
+}
+
+#[test]
+fn a_kmax_beyond_every_mesh_fails_and_says_which_would_do() {
+    let room = Room::with_study();
+    let outcome = tui(&room, &["report", "shapes"]);
+    assert_eq!(outcome.code, Some(1));
+    assert!(outcome.out.contains("No tables") && outcome.out.contains("Skipped models (12)"), "{}", outcome.out);
+    let line = "tui: shapes: no training model could be used; 12 of 12 models have fewer than kmax = 500 eigenvalues";
+    assert!(outcome.err.starts_with(line) && outcome.err.contains("with kmax = 72 all would"), "{}", outcome.err);
+    assert_eq!(outcome.err.lines().count(), 1, "{}", outcome.err);
 }
 
 #[test]
@@ -345,7 +358,7 @@ fn ctrl_c_stops_soon_with_130_and_keeps_what_is_finished() {
     }
     let child = spawn(&room, &["report", "shapes", "--set", "kmax=100", "--threads", "2"], Stdio::piped());
     let start = Instant::now();
-    while room.entries().len() < 3 && start.elapsed() < Duration::from_secs(60) {
+    while room.entries().len() < 3 && start.elapsed() < Duration::from_mins(1) {
         std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(100));

@@ -1,11 +1,12 @@
 //! What a computation without a screen tells and hears: a bar on standard error, Ctrl-C.
 
 use std::{
+    fmt,
     io::{self, IsTerminal as _},
     time::Duration,
 };
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::interrupt::Interrupt;
 use crate::watch::Watch;
@@ -23,9 +24,12 @@ impl Progress {
         let target =
             if io::stderr().is_terminal() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(None, target).with_message(unit);
-        let template = "{bar:32} {pos}/{len} {msg}  {per_sec:.dim}  {elapsed} gone, {eta} left";
+        let template = "{bar:32} {pos}/{len} {msg}  {rate} a second, {elapsed} gone, {eta} left";
         if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
+            bar.set_style(style.with_key("rate", |state: &ProgressState, out: &mut dyn fmt::Write| {
+                // A bar that cannot be drawn is no trouble.
+                let _ = write!(out, "{:.1}", state.per_sec());
+            }));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
         Self { bar, afterwards, interrupt }

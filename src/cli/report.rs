@@ -75,10 +75,19 @@ fn write(root: &Path, arguments: &StudyArguments, target: &Target) -> Result<Exi
     );
     deliver(&document, target)?;
     warn(&document, target);
-    if document.data.train == 0 {
-        return Err(Failure::Failed(format!("{}: no training model could be used", root.display())));
+    if document.tables.is_empty() {
+        return Err(Failure::Failed(format!("{}: {}", root.display(), why_no_study(&document))));
     }
     Ok(Exit::Done)
+}
+
+/// There were too few models to compare; the usual reason is a kmax beyond what small meshes have.
+fn why_no_study(document: &Document) -> String {
+    let few = match document.data.train {
+        0 => "no training model could be used",
+        _ => "a study needs two training models at least",
+    };
+    document.run.warnings.iter().fold(few.to_owned(), |why, warning| format!("{why}; {warning}"))
 }
 
 fn deliver(document: &Document, target: &Target) -> Result<(), Failure> {
@@ -98,6 +107,9 @@ fn deliver(document: &Document, target: &Target) -> Result<(), Failure> {
 /// Says on standard error what a reader of a table or a file might overlook.
 fn warn(document: &Document, target: &Target) {
     if target.format == ReportFormat::Text && target.out.is_none() {
+        return;
+    }
+    if document.tables.is_empty() {
         return;
     }
     document.run.warnings.iter().for_each(|warning| complain(warning));

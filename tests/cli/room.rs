@@ -147,7 +147,11 @@ pub fn ring(around: usize, across: usize, thickness: f64) -> String {
 
 fn off(vertices: &[[f64; 3]], faces: &[[usize; 3]]) -> String {
     let mut text = format!("OFF\n{} {} 0\n", vertices.len(), faces.len());
-    vertices.iter().for_each(|[x, y, z]| writeln!(text, "{x} {y} {z}").unwrap());
-    faces.iter().for_each(|[a, b, c]| writeln!(text, "3 {a} {b} {c}").unwrap());
+    for [x, y, z] in vertices {
+        writeln!(text, "{x} {y} {z}").unwrap();
+    }
+    for [a, b, c] in faces {
+        writeln!(text, "3 {a} {b} {c}").unwrap();
+    }
     text
 }
