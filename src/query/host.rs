@@ -4,31 +4,29 @@ use std::{
     collections::{HashMap, VecDeque},
     path::PathBuf,
     sync::{Arc, mpsc},
-    time::{Duration, Instant},
+    time::Instant,
 };
 
 use salsa::Setter;
 use thiserror::Error;
 
 use super::{
-    Answer, Part, Query, Settings, Source, Stage,
+    Part, Query, Settings, Source, Stage,
     db::{Database, Knobs, ModelFile},
-    inquiry::{Inquiry, Members, Piece},
     library::{Facts, Failure, Found, Library},
     pool::{Job, Listener, News, Pool, What},
     stamp::Stamp,
     trace::Trace,
 };
 use crate::{
-    dataset::{DataSet, Role},
+    dataset::DataSet,
     mesh::Format,
-    selection::Cost,
     spectrum::Choice,
     store::Store,
     study::{Boosted, Climbed, FirstK, Mark, Table},
-    watch::Watch,
 };
 
+mod studying;
 mod telling;
 
 /// What a host is made of.
@@ -351,42 +349,6 @@ impl Host {
         }
     }
 
-    /// The models whose spectra are there; none while they cannot make a study (two training models at least).
-    pub(crate) fn members(&self) -> Option<Members> {
-        let kmax = self.settings.kmax;
-        let ready = self.rows.iter().enumerate().filter_map(|(place, row)| match &row.found {
-            Some(Ok(solved)) if solved.eigenvalues.len() >= kmax => Some((place, row.file, solved.eigenvalues.len())),
-            _ => None,
-        });
-        let ready: Vec<_> = ready.collect();
-        let train = ready.iter().filter(|(_, file, _)| file.role(&self.database) == Role::Train).count();
-        (train >= 2).then(|| Members {
-            places: Arc::new(ready.iter().map(|&(place, ..)| place).collect()),
-            files: ready.iter().map(|&(_, file, _)| file).collect(),
-            reach: ready.iter().map(|&(_, _, count)| count).min().unwrap_or(kmax).min(self.reach),
-        })
-    }
-
-    /// Prepares the study of `members` for another thread.
-    pub(crate) fn inquire(&self, members: Members) -> Inquiry {
-        Inquiry::new(self.database.clone(), members)
-    }
-
-    /// Takes in a value of the study of `members`.
-    pub(crate) fn learn(&mut self, members: &Members, piece: Piece) {
-        self.shown.places = Arc::clone(&members.places);
-        let shown = &mut self.shown;
-        match piece {
-            Piece::FirstK(value) => shown.first_k = Part::fresh(value),
-            Piece::Climb(Cost::Error, value) => shown.climb_error = Part::fresh(value),
-            Piece::Climb(Cost::Adr, value) => shown.climb_adr = Part::fresh(value),
-            Piece::Boosted(value) => shown.boosted = Part::fresh(value),
-            Piece::Marks(value) => shown.marks = Part::fresh(value),
-            Piece::Tables(value) => shown.tables = Part::fresh(value),
-            Piece::Failed(reason) => self.failure = Some(reason),
-        }
-    }
-
     /// Whether every model is either ready or out.
     pub(crate) fn complete(&self) -> bool {
         self.rows.iter().all(|row| match &row.found {
@@ -404,63 +366,6 @@ impl Host {
     /// Keeps what the next session needs to start quickly.
     pub(crate) fn save(&self) {
         self.library.save_contents();
-    }
-
-    /// Solves everything and makes the study: the whole experiment, without a screen.
-    ///
-    /// `watch` hears of models (finished, all) and is polled every few milliseconds.
-    ///
-    /// # Errors
-    /// [`Cancelled`] once the watch says so; finished spectra and bands are kept.
-    pub fn run(&mut self, watch: &dyn Watch) -> Result<Answer, Cancelled> {
-        if self.stopped {
-            self.resume();
-        }
-        let tick = Duration::from_millis(5);
-        watch.progress(0, self.rows.len());
-        while !self.complete() {
-            if watch.cancelled() {
-                self.stop();
-                self.save();
-                return Err(Cancelled);
-            }
-            let heard = self.news.as_ref().and_then(|news| news.recv_timeout(tick).ok());
-            if let Some(news) = heard
-                && self.hear(news)
-            {
-                watch.progress(self.rows.iter().filter(|row| row.found.is_some()).count(), self.rows.len());
-            }
-        }
-        self.save();
-        if let Some(members) = self.members() {
-            let inquiry = self.inquire(members.clone());
-            let (sender, pieces) = mpsc::channel();
-            let study = std::thread::spawn(move || {
-                inquiry.run(&|piece| {
-                    let _ = sender.send(piece);
-                });
-            });
-            loop {
-                match pieces.recv_timeout(tick) {
-                    Ok(piece) => self.learn(&members, piece),
-                    Err(mpsc::RecvTimeoutError::Disconnected) => break,
-                    Err(mpsc::RecvTimeoutError::Timeout) if watch.cancelled() => {
-                        self.abandon();
-                        return Err(Cancelled);
-                    }
-                    Err(mpsc::RecvTimeoutError::Timeout) => {}
-                }
-            }
-            let _ = study.join();
-        } else {
-            self.shown = Shown::default();
-        }
-        Ok(self.answer())
-    }
-
-    /// Stops the study that is being made; it leaves within some 10 ms.
-    pub(crate) fn abandon(&mut self) {
-        self.database.write(salsa::Database::trigger_cancellation);
     }
 }
 
