@@ -157,8 +157,8 @@ impl Store {
             return;
         }
         let Some(bytes) = self.inner.encode(key, value) else { return };
-        let (folder, _lock) = self.inner.reserve(key);
-        self.inner.save(key, &folder, &bytes);
+        let lock = self.inner.lock(key);
+        self.inner.save(key, &bytes, lock);
     }
 
     /// Replaces the value under `key` by what `merge` makes of the current one; its `None` leaves the entry as it is.
@@ -169,10 +169,10 @@ impl Store {
         if !self.inner.usable {
             return;
         }
-        let (folder, _lock) = self.inner.reserve(key);
+        let lock = self.inner.lock(key);
         let Some(value) = merge(self.inner.load(key)) else { return };
         let Some(bytes) = self.inner.encode(key, &value) else { return };
-        self.inner.save(key, &folder, &bytes);
+        self.inner.save(key, &bytes, lock);
     }
 }
 
@@ -239,35 +239,30 @@ impl Inner {
         }
     }
 
-    /// The entry's folder, made if absent, and its lock if it could be had.
-    fn reserve(&self, key: &Key) -> (PathBuf, Option<Lock>) {
+    /// Makes the entry's folder if it is absent, and locks it.
+    fn lock(&self, key: &Key) -> io::Result<Lock> {
         let folder = entry::folder(&self.dir, key);
-        // A folder that cannot be made is reported by the write, which fails in it.
-        let lock = match self.disk.make_folder(&folder) {
-            Ok(()) => self.disk.lock(&folder.join(entry::LOCK), self.options.patience),
-            Err(_) => return (folder, None),
-        };
-        match lock {
-            Ok(lock) => (folder, Some(lock)),
-            Err(error) => {
-                self.warn_io("cannot lock", &error, "two programs at once may lose each other's work");
-                (folder, None)
-            }
-        }
+        self.disk.make_folder(&folder)?;
+        self.disk.lock(&folder.join(entry::LOCK), self.options.patience)
     }
 
-    /// Writes the entry so that it is there as a whole or not at all.
-    fn save(&self, key: &Key, folder: &Path, bytes: &[u8]) {
+    /// Writes the entry so that it is there as a whole or not at all, then lets go of the lock.
+    fn save(&self, key: &Key, bytes: &[u8], lock: io::Result<Lock>) {
+        let folder = entry::folder(&self.dir, key);
         let attempt = || -> io::Result<()> {
-            self.disk.make_folder(folder)?;
-            let mut temporary = self.disk.create(folder)?;
+            self.disk.make_folder(&folder)?;
+            let mut temporary = self.disk.create(&folder)?;
             self.disk.write(temporary.as_file_mut(), bytes)?;
             self.disk.sync(temporary.as_file())?;
             self.disk.rename(temporary, &entry::path(&self.dir, key))?;
-            self.disk.sync_folder(folder)
+            self.disk.sync_folder(&folder)
         };
-        if let Err(error) = attempt() {
-            self.warn_io("cannot write", &error, "results are not kept");
+        match (attempt(), lock) {
+            (Err(error), _) => self.warn_io("cannot write", &error, "results are not kept"),
+            (Ok(()), Err(error)) => {
+                self.warn_io("cannot lock", &error, "two programs at once may lose each other's work");
+            }
+            (Ok(()), Ok(_)) => {}
         }
     }
 
@@ -278,9 +273,12 @@ impl Inner {
     }
 
     fn warn_io(&self, what: &str, error: &io::Error, so: &str) {
-        // The text of an error may carry a path; its number does not, so that a full disk is one trouble.
-        let class = format!("{what} {:?} {:?}", error.kind(), error.raw_os_error());
-        self.warn(class, || format!("{what}: {error}; {so}"));
+        // Without what was wrapped around it: the name of one file among many makes it no other trouble.
+        let mut root: &dyn std::error::Error = error;
+        while let Some(source) = root.source() {
+            root = source;
+        }
+        self.warn(format!("{what} {root}"), || format!("{what}: {root}; {so}"));
     }
 
     fn warn(&self, class: String, text: impl FnOnce() -> String) {

@@ -49,19 +49,19 @@ enum Fault {
     Dies,
 }
 
-/// The local disk without its syncs (they are slow), and with one fault.
+/// The local disk without its syncs (they are slow), and with faults.
 #[derive(Clone, Default)]
 struct Shaky {
-    fault: Arc<Mutex<Option<(Step, Fault)>>>,
+    faults: Arc<Mutex<Vec<(Step, Fault)>>>,
 }
 
 impl Shaky {
-    fn set(&self, fault: Option<(Step, Fault)>) {
-        *self.fault.lock().unwrap() = fault;
+    fn set(&self, faults: impl IntoIterator<Item = (Step, Fault)>) {
+        *self.faults.lock().unwrap() = faults.into_iter().collect();
     }
 
     fn now(&self, step: Step) -> Option<Fault> {
-        self.fault.lock().unwrap().filter(|(at, _)| *at == step).map(|(_, fault)| fault)
+        self.faults.lock().unwrap().iter().find(|(at, _)| *at == step).map(|(_, fault)| *fault)
     }
 
     /// Fails where the step has no bytes of its own.
@@ -88,7 +88,7 @@ impl Disk for Shaky {
     fn create(&self, folder: &Path) -> io::Result<NamedTempFile> {
         self.pass(Step::Create)?;
         let mut file = Local.create(folder)?;
-        if self.fault.lock().unwrap().is_some_and(|(_, fault)| fault == Fault::Dies) {
+        if self.faults.lock().unwrap().iter().any(|(_, fault)| *fault == Fault::Dies) {
             file.disable_cleanup(true);
         }
         Ok(file)

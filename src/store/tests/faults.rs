@@ -56,6 +56,20 @@ fn a_failing_write_costs_one_warning_and_nothing_else() {
 }
 
 #[test]
+fn a_read_only_disk_costs_one_warning_and_is_still_read() {
+    let mut room = Room::new();
+    room.store.put(&key(0), &0_u64);
+    room.reopen();
+    room.disk.set([Step::Create, Step::Lock, Step::Mark].map(|step| (step, Fault::Fails(30))));
+    for number in 0..20 {
+        room.store.update(&key(number), |current: Option<u64>| Some(current.unwrap_or_default() + 1));
+        assert_eq!(room.store.get(&key(number)), (number == 0).then_some(0_u64));
+    }
+    let warnings = room.store.warnings();
+    assert!(matches!(&warnings[..], [one] if one.contains("cannot write")), "{warnings:?}");
+}
+
+#[test]
 fn a_failing_read_is_a_miss_with_one_warning() {
     for code in CODES.into_iter().filter(|code| *code != 2) {
         let room = Room::new();
