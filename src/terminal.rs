@@ -16,7 +16,7 @@ pub use self::{
     caps::look,
     ending::{Ending, Exit},
 };
-use self::{events::Event, guard::Guard, screen::Screen};
+use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
@@ -27,6 +27,7 @@ mod caps;
 mod ending;
 mod events;
 mod guard;
+mod input;
 mod keys;
 mod screen;
 mod session;
@@ -95,17 +96,15 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     let (queue, inbox) = events::queue();
     let signals = events::signals(&queue).map_err(TerminalError::io("watch the signals of"))?;
     let news = queue.clone();
-    let notify: Notify = Box::new(move |update| {
-        // After the end of the session there is nobody to tell.
-        news.send(Event::Update(update));
-    });
+    let notify: Notify = Box::new(move |update| news.send(Event::Update(update)));
     let engine = start(notify).map_err(TerminalError::Engine)?;
     let guard = Guard::enter(queue.clone()).map_err(TerminalError::io("set up"))?;
     let mut screen = Screen::new(guard, opening.look).map_err(TerminalError::io("set up"))?;
-    events::input(&queue).map_err(TerminalError::io("read"))?;
+    let input = Input::begin(queue).map_err(TerminalError::io("read"))?;
     let state = State::new(opening.title, opening.settings);
     let outcome = session::run(state, &engine, &mut screen, &inbox);
-    // The user gets the shell back before the engine puts its things in order.
+    // What is typed from now on belongs to the shell, which the user sees before the engine puts its things in order.
+    drop(input);
     let panics = screen.leave();
     signals.close();
     drop(engine);

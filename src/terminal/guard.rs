@@ -47,8 +47,10 @@ impl Guard {
                 before(info);
                 return;
             }
-            let words = info.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-            let text = format!("{}: {words}", thread::current().name().unwrap_or("a thread"));
+            let name = thread::current().name().unwrap_or("a thread").to_owned();
+            let place = info.location().map(|place| format!(" ({}:{})", place.file(), place.line()));
+            let why = info.payload_as_str().unwrap_or("for no stated reason");
+            let text = format!("{name} panicked: {why}{}", place.unwrap_or_default());
             let mut panics = panics.lock().unwrap_or_else(PoisonError::into_inner);
             if panics.len() < PANICS {
                 panics.push(text.clone());

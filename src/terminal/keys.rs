@@ -1,61 +1,250 @@
-//! A terminal's key events → the keymap's keys.
-
-use ratatui::crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+//! The bytes that terminals send for keys → the keymap's keys.
+//!
+//! What xterm, VTE, tmux, screen, the Linux console and other common terminals send is known; whatever else comes in a well-formed
+//! sequence is passed over. Pasted text is typed text. Escape and a character in one packet, which slow lines make of
+//! two presses, are two keys: the keymap knows no Alt.
 
 use crate::workbench::keymap::Key;
 
-/// The key of an event, unless it was let go or is none that the keymap knows.
-pub(super) fn key(event: KeyEvent) -> Option<Key> {
-    if event.kind == KeyEventKind::Release {
-        return None;
+/// No key is longer; what is, is noise.
+const LONGEST: usize = 32;
+
+/// Cuts a stream of bytes into keys.
+#[derive(Debug, Default)]
+pub(super) struct Keys {
+    pending: Vec<u8>,
+}
+
+/// What the beginning of the stream is.
+#[derive(Debug, PartialEq, Eq)]
+enum Head {
+    /// So many bytes, and the key that they mean, if any.
+    Whole(usize, Option<Key>),
+    /// The beginning of something.
+    Part,
+}
+
+impl Keys {
+    /// Takes bytes, gives the keys that are whole.
+    pub(super) fn feed(&mut self, bytes: &[u8]) -> Vec<Key> {
+        self.pending.extend_from_slice(bytes);
+        let mut keys = Vec::new();
+        let mut at = 0;
+        while at < self.pending.len() {
+            match head(&self.pending[at..]) {
+                Head::Whole(used, key) => {
+                    at += used;
+                    keys.extend(key);
+                }
+                Head::Part => break,
+            }
+        }
+        self.pending.drain(..at);
+        keys
     }
-    let with = |modifier| event.modifiers.contains(modifier);
-    let shift = with(KeyModifiers::SHIFT);
-    Some(match event.code {
-        KeyCode::Char(c) if with(KeyModifiers::CONTROL) => Key::Ctrl(c.to_ascii_lowercase()),
-        KeyCode::Char(_) if with(KeyModifiers::ALT) => return None,
-        KeyCode::Char(c) => Key::Char(c),
-        KeyCode::Enter => Key::Enter,
-        KeyCode::Esc => Key::Esc,
-        KeyCode::Tab if !shift => Key::Tab,
-        KeyCode::Tab | KeyCode::BackTab => Key::BackTab,
-        KeyCode::Backspace => Key::Backspace,
-        KeyCode::Up => Key::Up,
-        KeyCode::Down => Key::Down,
-        KeyCode::Left if shift => Key::ShiftLeft,
-        KeyCode::Right if shift => Key::ShiftRight,
-        KeyCode::Left => Key::Left,
-        KeyCode::Right => Key::Right,
-        KeyCode::PageUp => Key::PageUp,
-        KeyCode::PageDown => Key::PageDown,
-        KeyCode::Home => Key::Home,
-        KeyCode::End => Key::End,
-        KeyCode::F(number) => Key::F(number),
+
+    /// True when something has begun and its rest is to be waited for.
+    pub(super) const fn waits(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// No more came: an Escape was the key itself, everything else noise.
+    pub(super) fn give_up(&mut self) -> Option<Key> {
+        let key = (self.pending == [0x1b]).then_some(Key::Esc);
+        self.pending.clear();
+        key
+    }
+}
+
+/// The key at the beginning of `bytes`, of which there is at least one.
+fn head(bytes: &[u8]) -> Head {
+    match bytes {
+        [0x1b] => Head::Part,
+        [0x1b, b'[', rest @ ..] => control_sequence(rest),
+        [0x1b, b'O', rest @ ..] => match rest {
+            [] => Head::Part,
+            [last, ..] => Head::Whole(3, single_shift(*last)),
+        },
+        [0x1b, ..] => Head::Whole(1, Some(Key::Esc)),
+        [b'\r' | b'\n', ..] => Head::Whole(1, Some(Key::Enter)),
+        [b'\t', ..] => Head::Whole(1, Some(Key::Tab)),
+        [0x08 | 0x7f, ..] => Head::Whole(1, Some(Key::Backspace)),
+        [control @ 0x01..=0x1a, ..] => Head::Whole(1, Some(Key::Ctrl(char::from(control | 0x60)))),
+        [0x00..=0x1f, ..] => Head::Whole(1, None),
+        [ascii @ 0x20..=0x7e, ..] => Head::Whole(1, Some(Key::Char(char::from(*ascii)))),
+        _ => character(bytes),
+    }
+}
+
+/// A character of several bytes in UTF-8.
+fn character(bytes: &[u8]) -> Head {
+    let long = match bytes[0] {
+        0xc2..=0xdf => 2,
+        0xe0..=0xef => 3,
+        0xf0..=0xf4 => 4,
+        _ => return Head::Whole(1, None),
+    };
+    match std::str::from_utf8(&bytes[..long.min(bytes.len())]) {
+        Ok(text) => Head::Whole(long, text.chars().next().map(Key::Char)),
+        Err(error) if error.error_len().is_none() => Head::Part,
+        Err(_) => Head::Whole(1, None),
+    }
+}
+
+/// What follows `ESC [`: parameters and a final byte (ECMA-48, 5.4).
+fn control_sequence(rest: &[u8]) -> Head {
+    const BEGUN: usize = 2;
+    if let [b'[', rest @ ..] = rest {
+        // The Linux console's F1 to F5.
+        return match rest {
+            [] => Head::Part,
+            [last @ b'A'..=b'E', ..] => Head::Whole(BEGUN + 2, Some(Key::F(last - b'A' + 1))),
+            _ => Head::Whole(BEGUN + 1, None),
+        };
+    }
+    let Some(end) = rest.iter().position(|byte| !(0x20..=0x3f).contains(byte)) else {
+        return if rest.len() > LONGEST { Head::Whole(BEGUN + rest.len(), None) } else { Head::Part };
+    };
+    if !(0x40..=0x7e).contains(&rest[end]) {
+        // Broken off by something that is no part of it.
+        return Head::Whole(BEGUN + end, None);
+    }
+    let numbers: Vec<u16> = rest[..end]
+        .split(|byte| *byte == b';')
+        .map(|digits| std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).unwrap_or(0))
+        .collect();
+    let number = numbers.first().copied().unwrap_or(0);
+    let shift = numbers.get(1).is_some_and(|modifiers| modifiers.saturating_sub(1) & 1 == 1);
+    let key = match rest[end] {
+        b'C' if shift => Some(Key::ShiftRight),
+        b'D' if shift => Some(Key::ShiftLeft),
+        b'Z' => Some(Key::BackTab),
+        b'~' => tilde(number),
+        last => single_shift(last),
+    };
+    Head::Whole(BEGUN + end + 1, key)
+}
+
+/// Keys that are told by one letter, after `ESC O` or `ESC [`.
+const fn single_shift(last: u8) -> Option<Key> {
+    Some(match last {
+        b'A' => Key::Up,
+        b'B' => Key::Down,
+        b'C' => Key::Right,
+        b'D' => Key::Left,
+        b'H' => Key::Home,
+        b'F' => Key::End,
+        b'M' => Key::Enter,
+        b'P'..=b'S' => Key::F(last - b'P' + 1),
+        _ => return None,
+    })
+}
+
+/// Keys that are told by a number, `ESC [ number ~`.
+const fn tilde(number: u16) -> Option<Key> {
+    Some(match number {
+        1 | 7 => Key::Home,
+        4 | 8 => Key::End,
+        5 => Key::PageUp,
+        6 => Key::PageDown,
+        11..=15 => Key::F(number as u8 - 10),
+        17..=21 => Key::F(number as u8 - 11),
+        23 | 24 => Key::F(number as u8 - 12),
         _ => return None,
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
-    #[test]
-    fn modifiers_become_part_of_the_key() {
-        let pressed = |code, modifiers| key(KeyEvent::new(code, modifiers));
-        assert_eq!(pressed(KeyCode::Char('R'), KeyModifiers::SHIFT), Some(Key::Char('R')));
-        assert_eq!(pressed(KeyCode::Char('C'), KeyModifiers::CONTROL), Some(Key::Ctrl('c')));
-        assert_eq!(pressed(KeyCode::Char('x'), KeyModifiers::ALT), None);
-        assert_eq!(pressed(KeyCode::Left, KeyModifiers::SHIFT), Some(Key::ShiftLeft));
-        assert_eq!(pressed(KeyCode::BackTab, KeyModifiers::SHIFT), Some(Key::BackTab));
-        assert_eq!(pressed(KeyCode::Insert, KeyModifiers::NONE), None);
+    fn keys(bytes: &[u8]) -> Vec<Key> {
+        let mut stream = Keys::default();
+        let mut keys = stream.feed(bytes);
+        keys.extend(stream.give_up());
+        keys
     }
 
     #[test]
-    fn only_presses_count() {
-        let mut event = KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE);
-        event.kind = KeyEventKind::Repeat;
-        assert_eq!(key(event), Some(Key::Enter));
-        event.kind = KeyEventKind::Release;
-        assert_eq!(key(event), None);
+    fn what_terminals_send() {
+        for (bytes, key) in [
+            (&b"a"[..], Key::Char('a')),
+            (b"R", Key::Char('R')),
+            ("é".as_bytes(), Key::Char('é')),
+            ("象".as_bytes(), Key::Char('象')),
+            ("🐘".as_bytes(), Key::Char('🐘')),
+            (b"\r", Key::Enter),
+            (b"\n", Key::Enter),
+            (b"\x1bOM", Key::Enter),
+            (b"\t", Key::Tab),
+            (b"\x1b[Z", Key::BackTab),
+            (b"\x7f", Key::Backspace),
+            (b"\x08", Key::Backspace),
+            (b"\x03", Key::Ctrl('c')),
+            (b"\x1a", Key::Ctrl('z')),
+            (b"\x1b", Key::Esc),
+            (b"\x1b[A", Key::Up),
+            (b"\x1bOB", Key::Down),
+            (b"\x1b[1;2C", Key::ShiftRight),
+            (b"\x1b[1;6D", Key::ShiftLeft),
+            (b"\x1b[1;5D", Key::Left),
+            (b"\x1b[H", Key::Home),
+            (b"\x1bOF", Key::End),
+            (b"\x1b[1~", Key::Home),
+            (b"\x1b[8~", Key::End),
+            (b"\x1b[5~", Key::PageUp),
+            (b"\x1b[6;3~", Key::PageDown),
+            (b"\x1bOP", Key::F(1)),
+            (b"\x1b[1;2Q", Key::F(2)),
+            (b"\x1b[[E", Key::F(5)),
+            (b"\x1b[15~", Key::F(5)),
+            (b"\x1b[17~", Key::F(6)),
+            (b"\x1b[24~", Key::F(12)),
+        ] {
+            assert_eq!(keys(bytes), [key], "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn what_means_nothing_is_passed_over() {
+        for bytes in
+            [&b"\x1b[3~"[..], b"\x1b[200~", b"\x1b[?62;22c", b"\x1b[I", b"\0", b"\x1f", b"\xff", b"\xc3", b"\x1b[12"]
+        {
+            assert_eq!(keys(bytes), [], "{bytes:?}");
+        }
+        assert_eq!(keys(b"\xc3(q"), [Key::Char('('), Key::Char('q')]);
+        assert_eq!(keys(b"\x1b[12\x1b[A"), [Key::Up]);
+        let mut endless = Keys::default();
+        assert_eq!(endless.feed(&[b"\x1b[".as_slice(), &[b'1'; 100]].concat()), []);
+        assert_eq!(endless.feed(b"q"), [Key::Char('q')]);
+    }
+
+    #[test]
+    fn escape_and_a_character_are_two_keys() {
+        assert_eq!(keys(b"\x1bq"), [Key::Esc, Key::Char('q')]);
+        assert_eq!(keys(b"\x1b\x1b"), [Key::Esc, Key::Esc]);
+    }
+
+    proptest! {
+        #[test]
+        fn it_does_not_matter_how_the_bytes_are_cut(presses in proptest::collection::vec(0_usize..9, 0..40), cut in 1_usize..7) {
+            let known = [&b"\x1b[A"[..], b"\x1b[1;2D", b"\x1bOP", b"\x1b[[A", "é".as_bytes(), "🐘".as_bytes(), b"q", b"\x1b[24~", b"\r"];
+            let bytes = presses.iter().flat_map(|press| known[*press]).copied().collect::<Vec<u8>>();
+            let mut stream = Keys::default();
+            let pieces: Vec<Key> = bytes.chunks(cut).flat_map(|piece| stream.feed(piece)).collect();
+            prop_assert_eq!(pieces.len(), presses.len());
+            prop_assert_eq!(pieces, keys(&bytes));
+            prop_assert!(!stream.waits());
+        }
+
+        #[test]
+        fn noise_is_survived_and_q_after_it_is_heard(noise in proptest::collection::vec(any::<u8>(), 0..200)) {
+            let mut stream = Keys::default();
+            stream.feed(&noise);
+            stream.give_up();
+            prop_assert_eq!(stream.feed(b"q"), [Key::Char('q')]);
+        }
     }
 }

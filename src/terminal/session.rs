@@ -79,8 +79,7 @@ struct Session<'a, E, S> {
 
 impl<E: Engine, S: Surface> Session<'_, E, S> {
     fn run(&mut self, inbox: &Receiver<Event>) -> io::Result<Ending> {
-        let (columns, rows) = self.surface.size()?;
-        self.apply(Action::Resize(columns, rows));
+        self.measure()?;
         loop {
             self.draw()?;
             let Some(first) = self.wait(inbox) else { continue };
@@ -132,10 +131,7 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                     return self.act(action);
                 }
             }
-            Event::Resize(columns, rows) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Resize(columns, rows));
-            }
+            Event::Resized => self.measure()?,
             Event::Update(Update::Answer(answer)) => {
                 let awaited =
                     answer.settings == self.state.settings && self.state.answer.settings != self.state.settings;
@@ -189,6 +185,11 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
     fn resume(&mut self) -> io::Result<()> {
         self.surface.resume()?;
         self.surface.forget()?;
+        self.measure()
+    }
+
+    /// Learns the size of the screen.
+    fn measure(&mut self) -> io::Result<()> {
         let (columns, rows) = self.surface.size()?;
         self.apply(Action::Resize(columns, rows));
         self.due.sooner(Due::Now);

@@ -190,7 +190,7 @@ fn a_panic_elsewhere_is_told_and_ends_nothing() {
     let mut paper = Paper::default();
     let ending = run(State::new("data", Settings::default()), &Ear::default(), &mut paper, &inbox).unwrap();
     assert_eq!(ending.exit, Exit::Gone);
-    let (_, paper, _) = played([Event::Panic("pool: index out of bounds".to_owned()), Event::Resize(10, 10)]);
+    let (_, paper, _) = played([Event::Panic("pool: index out of bounds".to_owned()), Event::Resized]);
     assert_eq!(paper.drawn.len(), 1);
 }
 

@@ -1,0 +1,226 @@
+//! A seat in front of the program: a pseudo-terminal, a keyboard, eyes and a clock.
+
+use std::{
+    env,
+    io::{Read as _, Write},
+    num::NonZeroU16,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    sync::{
+        Arc, Mutex, OnceLock,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, native_pty_system};
+use rustix::process::{Pid, Signal, kill_process};
+use vt100::{Parser, Screen};
+
+/// Nothing here takes longer, even on a machine that is busy with other things.
+const PATIENCE: Duration = Duration::from_secs(90);
+
+/// Someone in front of a program.
+pub struct Seat {
+    master: Box<dyn MasterPty + Send>,
+    keyboard: Box<dyn Write + Send>,
+    child: Box<dyn Child + Send + Sync>,
+    eyes: Arc<Mutex<Parser>>,
+    bytes: Arc<AtomicUsize>,
+    before: String,
+}
+
+fn cells(number: u16) -> NonZeroU16 {
+    NonZeroU16::new(number).unwrap()
+}
+
+fn size(columns: u16, rows: u16) -> PtySize {
+    PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 }
+}
+
+impl Seat {
+    /// Sits down in front of `tui` with these arguments.
+    pub fn at_tui(arguments: &[&str]) -> Self {
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_tui"));
+        command.args(arguments);
+        Self::at(command, 80, 24)
+    }
+
+    /// Sits down in front of a program on a terminal of this size.
+    pub fn at(mut command: CommandBuilder, columns: u16, rows: u16) -> Self {
+        command.env("TERM", "xterm-256color");
+        command.env("LC_ALL", "C.UTF-8");
+        command.env_remove("NO_COLOR");
+        let pair = native_pty_system().openpty(size(columns, rows)).unwrap();
+        let before = modes(&*pair.master);
+        let child = pair.slave.spawn_command(command).unwrap();
+        drop(pair.slave);
+        let keyboard = pair.master.take_writer().unwrap();
+        let mut light = pair.master.try_clone_reader().unwrap();
+        let eyes = Arc::new(Mutex::new(Parser::new(cells(rows), cells(columns), 0)));
+        let bytes = Arc::new(AtomicUsize::new(0));
+        let (seeing, counting) = (Arc::clone(&eyes), Arc::clone(&bytes));
+        thread::spawn(move || {
+            let mut buffer = [0; 1 << 12];
+            while let Ok(count @ 1..) = light.read(&mut buffer) {
+                seeing.lock().unwrap().process(&buffer[..count]);
+                counting.fetch_add(count, Ordering::SeqCst);
+            }
+        });
+        Self { master: pair.master, keyboard, child, eyes, bytes, before }
+    }
+
+    /// Presses keys, given as the bytes that a terminal sends for them.
+    pub fn press(&mut self, keys: &str) {
+        self.keyboard.write_all(keys.as_bytes()).unwrap();
+        self.keyboard.flush().unwrap();
+    }
+
+    /// Looks at the screen.
+    pub fn look<T>(&self, at: impl FnOnce(&Screen) -> T) -> T {
+        at(self.eyes.lock().unwrap().screen())
+    }
+
+    /// The screen's text.
+    pub fn text(&self) -> String {
+        self.look(Screen::contents)
+    }
+
+    /// Waits until the screen is as described; says what was to be seen when it never is.
+    pub fn until(&self, what: &str, seen: impl Fn(&Screen) -> bool) {
+        let began = Instant::now();
+        while !self.look(&seen) {
+            assert!(began.elapsed() < PATIENCE, "no {what} to be seen on\n{}", self.text());
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Waits for a text.
+    pub fn until_shown(&self, text: &str) {
+        self.until(text, |screen| screen.contents().contains(text));
+    }
+
+    /// Waits until everything is computed and nothing more is written.
+    pub fn until_settled(&self) {
+        self.until_shown("up to date");
+        loop {
+            let before = self.bytes();
+            thread::sleep(Duration::from_millis(400));
+            if self.bytes() == before {
+                return;
+            }
+        }
+    }
+
+    /// Bytes that the program has written.
+    pub fn bytes(&self) -> usize {
+        self.bytes.load(Ordering::SeqCst)
+    }
+
+    /// Makes the window another size.
+    pub fn resize(&self, columns: u16, rows: u16) {
+        self.eyes.lock().unwrap().screen_mut().set_size(cells(rows), cells(columns));
+        self.master.resize(size(columns, rows)).unwrap();
+    }
+
+    /// The program's process.
+    pub fn process(&self) -> Pid {
+        Pid::from_raw(self.child.process_id().unwrap() as i32).unwrap()
+    }
+
+    /// Sends it a signal.
+    pub fn signal(&self, signal: Signal) {
+        kill_process(self.process(), signal).unwrap();
+    }
+
+    /// True while the program runs.
+    pub fn runs(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_none()
+    }
+
+    /// Waits for the program's end.
+    pub fn end(&mut self) -> ExitStatus {
+        let began = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status;
+            }
+            assert!(began.elapsed() < PATIENCE, "still running\n{}", self.text());
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Checks that the terminal is as it was before the program ran.
+    pub fn assert_restored(&self) {
+        self.until("shell's screen", |screen| !screen.alternate_screen());
+        self.until("cursor", |screen| !screen.hide_cursor());
+        assert_eq!(modes(&*self.master), self.before, "the terminal's settings");
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        // A failed test leaves nobody running.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// The terminal's settings, all of them.
+fn modes(master: &dyn MasterPty) -> String {
+    format!("{:?}", master.get_termios().unwrap())
+}
+
+/// A folder of this test's own.
+pub fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pty").join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Makes a data set with the program itself.
+fn synth(folder: &Path, arguments: &[&str]) {
+    let status = Command::new(env!("CARGO_BIN_EXE_tui"))
+        .arg("synth")
+        .arg(folder)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .unwrap();
+    assert!(status.success());
+}
+
+/// Three classes of four small shapes, which take no time.
+pub fn small() -> &'static str {
+    static DATA: OnceLock<String> = OnceLock::new();
+    DATA.get_or_init(|| {
+        let data = folder("small").join("shapes");
+        synth(&data, &["--classes", "3", "--models", "4", "--vertices", "300"]);
+        data.to_str().unwrap().to_owned()
+    })
+}
+
+/// Shapes that one thread solves for a long while.
+pub fn heavy() -> &'static str {
+    static DATA: OnceLock<String> = OnceLock::new();
+    DATA.get_or_init(|| {
+        let data = folder("heavy").join("shapes");
+        synth(&data, &["--classes", "3", "--models", "8", "--vertices", "6000"]);
+        data.to_str().unwrap().to_owned()
+    })
+}
+
+/// In front of the small data set, with a cold cache of its own.
+pub fn at_small(name: &str) -> Seat {
+    let cache = folder(name);
+    Seat::at_tui(&[small(), "--cache", cache.to_str().unwrap(), "--set", "kmax=30", "--threads", "2"])
+}
+
+/// In front of the heavy data set, with a cold cache of its own.
+pub fn at_heavy(name: &str) -> Seat {
+    let cache = folder(name);
+    Seat::at_tui(&[heavy(), "--cache", cache.to_str().unwrap(), "--set", "kmax=500", "--threads", "1"])
+}
