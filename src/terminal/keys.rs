@@ -1,8 +1,8 @@
 //! The bytes that terminals send for keys → the keymap's keys.
 //!
-//! What xterm, VTE, tmux, screen, the Linux console and other common terminals send is known; whatever else comes in a well-formed
-//! sequence is passed over. Pasted text is typed text. Escape and a character in one packet, which slow lines make of
-//! two presses, are two keys: the keymap knows no Alt.
+//! What xterm, VTE, tmux, screen, the Linux console and other common terminals send is known; whatever else comes in a
+//! well-formed sequence is passed over. Pasted text is typed text. Escape and a character in one packet, which slow
+//! lines make of two presses, are two keys: the keymap knows no Alt.
 
 use crate::workbench::keymap::Key;
 
