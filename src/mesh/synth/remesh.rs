@@ -7,7 +7,7 @@
 use super::halfedge::HalfEdges;
 use super::polygonise::Surface;
 use super::random::Random;
-use super::sizing::{Tessellation, sizes};
+use super::sizing::{Tessellation, even_length, sizes};
 use super::solid::Solid;
 use super::vector::V3;
 
@@ -16,26 +16,37 @@ const ROUNDS: (usize, usize) = (7, 16);
 /// Of the wanted number of vertices, how far off is near enough.
 const NEAR: f64 = 0.05;
 /// Twice the area over the square of the longest side, below which a triangle is not made.
-const SLIVER: f64 = 0.15;
+pub(super) const SLIVER: f64 = 0.15;
 
 /// A surface on its way to a mesh.
+#[derive(Clone)]
 pub struct Remesher<'a> {
-    solid: &'a Solid,
-    mesh: HalfEdges,
-    normals: Vec<V3>,
-    /// Over which the field is differentiated.
+    pub(super) solid: &'a Solid,
+    pub(super) mesh: HalfEdges,
+    /// The surface's normals at the vertices.
+    pub(super) normals: Vec<V3>,
+    /// Of the grid that the surface was polygonised on.
     step: f64,
+    /// The length that the edges would have if all were alike.
+    pub(super) mean: f64,
 }
 
 impl<'a> Remesher<'a> {
     /// Takes the surface of `solid` as polygonised on a grid of `step`; none when it is not closed.
     pub fn new(solid: &'a Solid, surface: Surface, step: f64) -> Option<Self> {
         let mesh = HalfEdges::new(surface)?;
-        let mut remesher = Self { solid, normals: vec![V3::default(); mesh.vertex_slots() as usize], mesh, step };
-        for (normal, &p) in remesher.normals.iter_mut().zip(&remesher.mesh.points) {
-            *normal = solid.gradient(p, 0.2 * step).unit();
+        let mut normals = vec![V3::default(); mesh.vertex_slots() as usize];
+        for [a, b, c] in mesh.triangles() {
+            let [p, q, r] = [a, b, c].map(|x| mesh.point(x));
+            let area = (q - p).cross(r - p);
+            for x in [a, b, c] {
+                normals[x as usize] = normals[x as usize] + area;
+            }
         }
-        Some(remesher)
+        for normal in &mut normals {
+            *normal = normal.unit();
+        }
+        Some(Self { solid, mesh, normals, step, mean: step })
     }
 
     /// Number of components and genus.
@@ -47,20 +58,22 @@ impl<'a> Remesher<'a> {
     pub fn run(mut self, style: &Tessellation, random: &mut Random) -> Surface {
         let target = style.vertices as f64;
         // The grid's slivers go first: curvature need not be known at every one of them.
-        let fine = vec![1.6 * self.step; self.mesh.vertex_slots() as usize];
+        let fine = vec![1.1 * self.step; self.mesh.vertex_slots() as usize];
         for _ in 0..3 {
-            self.collapse(&fine);
+            self.collapse(&fine, false);
         }
         let mut aim = target;
         for round in 0..ROUNDS.1 {
-            let bends = self.bends();
-            let mut wanted = sizes(&self.mesh, style, &bends, aim);
+            self.mean = even_length(&self.mesh, aim);
+            let mut wanted = sizes(&self.mesh, style, &self.bends(), aim);
             self.split(&mut wanted);
-            self.collapse(&wanted);
+            self.collapse(&wanted, true);
             self.flip();
             self.relax();
             self.flip();
             self.relax();
+            self.sharpen();
+            self.flip();
             let ratio = self.mesh.vertex_count() as f64 / target;
             if round + 1 >= ROUNDS.0 && (ratio - 1.0).abs() < NEAR {
                 break;
@@ -69,27 +82,15 @@ impl<'a> Remesher<'a> {
                 aim = (aim / ratio.clamp(0.6, 1.6)).clamp(0.3 * target, 3.0 * target);
             }
         }
-        self.flip();
+        self.mend();
         self.jitter(style.jitter, random);
         self.roughen(style.noise, random);
         self.mesh.surface()
     }
 
     /// The point of the surface nearest `p`, about, and the normal there.
-    fn onto(&self, p: V3) -> (V3, V3) {
-        let q = self.solid.project(p, 0.2 * self.step, 2.0 * self.step);
-        (q, self.solid.gradient(q, 0.2 * self.step).unit())
-    }
-
-    fn bends(&self) -> Vec<f64> {
-        let at = |a: u32| {
-            if self.mesh.has_vertex(a) {
-                self.solid.curvature(self.mesh.point(a), self.normals[a as usize], self.step)
-            } else {
-                0.0
-            }
-        };
-        (0..self.mesh.vertex_slots()).map(at).collect()
+    pub(super) fn onto(&self, p: V3) -> (V3, V3) {
+        self.solid.project(p, 2.0 * self.step)
     }
 
     fn split(&mut self, wanted: &mut Vec<f64>) {
@@ -108,44 +109,77 @@ impl<'a> Remesher<'a> {
         }
     }
 
-    fn collapse(&mut self, wanted: &[f64]) {
+    /// Collapses short edges into their middle, which is put onto the surface where `exact`.
+    fn collapse(&mut self, wanted: &[f64], exact: bool) {
         for h in 0..self.mesh.slots() {
             if !self.mesh.is_edge(h) {
                 continue;
             }
             let (a, b) = (self.mesh.start(h), self.mesh.end(h));
             let size = 0.5 * (wanted[a as usize] + wanted[b as usize]);
-            if self.mesh.length(h) >= 0.8 * size || !self.mesh.can_collapse(h) {
-                continue;
-            }
-            let (p, normal) = self.onto(self.mesh.point(a).lerp(self.mesh.point(b), 0.5));
-            let [pa, pb] = [a, b].map(|x| self.mesh.point(x));
-            let new = self.ring_quality(a, p, normal, Some(b)).min(self.ring_quality(b, p, normal, Some(a)));
-            let old = || {
-                let at_a = self.ring_quality(a, pa, self.normals[a as usize], None);
-                at_a.min(self.ring_quality(b, pb, self.normals[b as usize], None))
-            };
-            let reaches = |x: u32| (self.mesh.point(x) - p).norm() < 1.5 * size;
-            if (new > SLIVER || new > old())
-                && self.mesh.neighbours(a).all(reaches)
-                && self.mesh.neighbours(b).all(reaches)
-            {
-                self.mesh.collapse(h, p);
-                self.normals[b as usize] = normal;
+            if self.mesh.length(h) < 0.8 * size {
+                self.try_collapse(h, 1.5 * size, exact);
             }
         }
     }
 
+    /// Collapses an edge into its middle unless that makes an edge of `longest`, or triangles that are bad and worse
+    /// than those there are.
+    pub(super) fn try_collapse(&mut self, h: u32, longest: f64, exact: bool) -> bool {
+        if !self.mesh.can_collapse(h) {
+            return false;
+        }
+        let (a, b) = (self.mesh.start(h), self.mesh.end(h));
+        let [pa, pb] = [a, b].map(|x| self.mesh.point(x));
+        let [na, nb] = [a, b].map(|x| self.normals[x as usize]);
+        let middle = pa.lerp(pb, 0.5);
+        let (p, normal) = if exact { self.onto(middle) } else { (middle, (na + nb).unit()) };
+        let new = self.ring_quality(a, p, normal, Some(b)).min(self.ring_quality(b, p, normal, Some(a)));
+        let old = || self.ring_quality(a, pa, na, None).min(self.ring_quality(b, pb, nb, None));
+        let reaches = |x: u32| (self.mesh.point(x) - p).norm() < longest;
+        let fits = (new > SLIVER || new > old())
+            && self.mesh.neighbours(a).all(reaches)
+            && self.mesh.neighbours(b).all(reaches);
+        if fits {
+            self.mesh.collapse(h, p);
+            self.normals[b as usize] = normal;
+        }
+        fits
+    }
+
+    /// The quality of the triangle of a half-edge.
+    pub(super) fn side_quality(&self, h: u32) -> f64 {
+        let [a, b, c] = [self.mesh.start(h), self.mesh.end(h), self.mesh.apex(h)];
+        let [p, q, r] = [a, b, c].map(|x| self.mesh.point(x));
+        self.quality([p, q, r], self.normals[a as usize], [b, c])
+    }
+
+    /// Whether the worse of the edge's two triangles would be better, flipped.
+    pub(super) fn flip_betters(&self, h: u32) -> bool {
+        let t = self.mesh.twin(h);
+        let new = self.flipped_quality(h);
+        new > self.side_quality(h).min(self.side_quality(t))
+    }
+
+    /// The worse quality of the two triangles that there would be with the other diagonal.
+    fn flipped_quality(&self, h: u32) -> f64 {
+        let t = self.mesh.twin(h);
+        let (a, b, c, d) = (self.mesh.start(h), self.mesh.end(h), self.mesh.apex(h), self.mesh.apex(t));
+        let [pa, pb, pc, pd] = [a, b, c, d].map(|x| self.mesh.point(x));
+        let normal = |x: u32| self.normals[x as usize];
+        self.quality([pa, pd, pc], normal(a), [d, c]).min(self.quality([pb, pc, pd], normal(b), [c, d]))
+    }
+
     /// How good a triangle is: twice its area over the square of its longest side, at most 0.87; negative when it does
-    /// not face as its corners' normals do.
+    /// not face as its corners' normals do on the whole.
     fn quality(&self, [p, q, r]: [V3; 3], normal: V3, others: [u32; 2]) -> f64 {
         let cross = (q - p).cross(r - p);
         let double_area = cross.norm();
         let (u, w, t) = (q - p, r - q, p - r);
         let shape = double_area / u.dot(u).max(w.dot(w)).max(t.dot(t)).max(1e-300);
-        let faces = cross.dot(normal) > 0.25 * double_area
-            && others.iter().all(|&x| cross.dot(self.normals[x as usize]) > 0.1 * double_area);
-        if faces { shape } else { shape - 1.0 }
+        // Against their sum: at a crease one corner's normal may be at a right angle to the triangle.
+        let sum = others.iter().fold(normal, |sum, &x| sum + self.normals[x as usize]);
+        if cross.dot(sum) > 0.5 * double_area * sum.norm() { shape } else { shape - 1.0 }
     }
 
     /// The worst quality around `a` if it were at `p`, leaving out the triangles that have `other`.
@@ -161,7 +195,7 @@ impl<'a> Remesher<'a> {
     }
 
     /// Whether `a` may move to `p`: the triangles around it are good there, or better than now.
-    fn may_move(&self, a: u32, p: V3, normal: V3) -> bool {
+    pub(super) fn may_move(&self, a: u32, p: V3, normal: V3) -> bool {
         let new = self.ring_quality(a, p, normal, None);
         new > SLIVER || new > self.ring_quality(a, self.mesh.point(a), self.normals[a as usize], None)
     }
@@ -190,17 +224,26 @@ impl<'a> Remesher<'a> {
             let (u, w) = (pa - apex, pb - apex);
             u.dot(w) / u.cross(w).norm().max(1e-30)
         };
-        if cotangent(pc) + cotangent(pd) > -1e-6 {
-            return false;
+        let excess = -(cotangent(pc) + cotangent(pd));
+        let (one, two) = ((pb - pa).cross(pc - pa), (pa - pb).cross(pd - pb));
+        if one.dot(two) > 0.85 * one.norm() * two.norm() {
+            if excess < 1e-6 {
+                return false;
+            }
+        } else {
+            // Across or along a crease: the diagonal that lies nearer to the surface.
+            let off = |p: V3, q: V3| self.solid.distance(p.lerp(q, 0.5)).abs();
+            let (now, then) = (off(pa, pb), off(pc, pd));
+            if then >= now || (excess < 1e-6 && then > 0.5 * now) {
+                return false;
+            }
         }
-        let normal = |x: u32| self.normals[x as usize];
-        let new = self.quality([pa, pd, pc], normal(a), [d, c]).min(self.quality([pb, pc, pd], normal(b), [c, d]));
-        new > SLIVER
-            || new > self.quality([pa, pb, pc], normal(a), [b, c]).min(self.quality([pb, pa, pd], normal(b), [a, d]))
+        let new = self.flipped_quality(h);
+        new > SLIVER || new > self.side_quality(h).min(self.side_quality(t))
     }
 
     /// Moves every vertex along the surface towards the middle of its neighbours.
-    fn relax(&mut self) {
+    pub(super) fn relax(&mut self) {
         for a in 0..self.mesh.vertex_slots() {
             if !self.mesh.has_vertex(a) {
                 continue;
@@ -218,66 +261,11 @@ impl<'a> Remesher<'a> {
             }
         }
     }
-
-    /// Pushes vertices at random along the surface, by at most `share` of their shortest edge.
-    fn jitter(&mut self, share: f64, random: &mut Random) {
-        if share <= 0.0 {
-            return;
-        }
-        for a in 0..self.mesh.vertex_slots() {
-            if !self.mesh.has_vertex(a) {
-                continue;
-            }
-            let (s, t) = self.normals[a as usize].tangents();
-            let push = (s * random.about_zero(1.0) + t * random.about_zero(1.0)) * (share * self.shortest(a));
-            let (p, normal) = self.onto(self.mesh.point(a) + push);
-            if self.may_move(a, p, normal) {
-                self.mesh.points[a as usize] = p;
-                self.normals[a as usize] = normal;
-            }
-        }
-    }
-
-    /// Pushes vertices at random off the surface, with a deviation of `share` of their shortest edge.
-    fn roughen(&mut self, share: f64, random: &mut Random) {
-        if share <= 0.0 {
-            return;
-        }
-        for a in 0..self.mesh.vertex_slots() {
-            if !self.mesh.has_vertex(a) {
-                continue;
-            }
-            let normal = self.normals[a as usize];
-            let p = self.mesh.point(a) + normal * (random.bell() * share * self.shortest(a));
-            if self.may_move(a, p, normal) {
-                self.mesh.points[a as usize] = p;
-            }
-        }
-    }
-
-    fn shortest(&self, a: u32) -> f64 {
-        self.mesh.around(a).map(|h| self.mesh.length(h)).fold(f64::MAX, f64::min)
-    }
-}
-
-/// The smallest angle of any triangle, in degrees.
-pub fn least_angle(surface: &Surface) -> f64 {
-    let point = |i: u32| surface.points[i as usize];
-    let mut least_tangent = f64::INFINITY;
-    for t in &surface.triangles {
-        for i in 0..3 {
-            let (u, w) = (point(t[(i + 1) % 3]) - point(t[i]), point(t[(i + 2) % 3]) - point(t[i]));
-            let (sine, cosine) = (u.cross(w).norm(), u.dot(w));
-            if cosine > 0.0 {
-                least_tangent = least_tangent.min(sine / cosine);
-            }
-        }
-    }
-    super::vector::angle_of(1.0, least_tangent).to_degrees()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::finish::least_angle;
     use super::super::polygonise::polygonise;
     use super::super::primitive::Primitive;
     use super::super::vector::{Frame, v};

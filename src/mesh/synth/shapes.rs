@@ -40,13 +40,14 @@ pub static CLASSES: [Class; 16] = [
     Class { name: "vase", genus: 0, build: household::vase },
 ];
 
-/// The limbs along a line of points, as thick at each as told.
+/// The limbs along a line of points, as thick at each as told, with joints a little rounded.
 fn tube(points: &[V3], radii: &[f64]) -> Solid {
+    let blend = 0.3 * radii.iter().copied().fold(f64::MAX, f64::min);
     let limbs = points
         .windows(2)
         .zip(radii.windows(2))
         .map(|(ends, thick)| Primitive::limb(ends[0], ends[1], thick[0], thick[1]).into());
-    Solid::union(0.0, limbs)
+    Solid::union(blend, limbs)
 }
 
 /// A line of points from `start`: each step has a direction and a length.

@@ -41,7 +41,7 @@ impl Tessellation {
                     (along * (random.between(3.0, 9.0) / size), random.between(0.0, 6.0))
                 };
                 let waves = (0..2).map(|_| wave(random)).collect();
-                Self { waves, depth: random.between(0.3, 0.5), noise: random.between(0.0, 0.02), ..plain }
+                Self { waves, depth: random.between(0.2, 0.4), noise: random.between(0.0, 0.02), ..plain }
             }
         }
     }
@@ -56,7 +56,7 @@ impl Tessellation {
 /// vertices; `bends` are the curvatures there. Slots of removed vertices hold 0.
 pub fn sizes(mesh: &HalfEdges, style: &Tessellation, bends: &[f64], count: f64) -> Vec<f64> {
     let areas = vertex_areas(mesh);
-    let mean = (areas.iter().sum::<f64>() / (PER_VERTEX * count)).sqrt();
+    let mean = even_length(mesh, count);
     let slots = mesh.vertex_slots() as usize;
     let mut taste = vec![0.0; slots];
     let mut longest = vec![0.0; slots];
@@ -65,7 +65,7 @@ pub fn sizes(mesh: &HalfEdges, style: &Tessellation, bends: &[f64], count: f64) 
         // radius^adapt, between its geometric neighbours, without a power function.
         let eased = ease(radius / mean, style.adapt) * mean;
         taste[a] = eased * style.taste(mesh.points[a]);
-        longest[a] = 1.35 * radius;
+        longest[a] = (1.1 * radius).min(0.6 * mean + 0.45 * radius);
     }
     let vertices_at = |scale: f64| -> f64 {
         let of = |a: usize| (scale * taste[a]).min(longest[a]);
@@ -82,6 +82,11 @@ pub fn sizes(mesh: &HalfEdges, style: &Tessellation, bends: &[f64], count: f64) 
         (0..slots).map(|a| if taste[a] > 0.0 { (high * taste[a]).min(longest[a]) * excess } else { 0.0 }).collect();
     grade(mesh, &mut wanted);
     wanted
+}
+
+/// The length of the edges of an even mesh of the same area with `count` vertices.
+pub fn even_length(mesh: &HalfEdges, count: f64) -> f64 {
+    (vertex_areas(mesh).iter().sum::<f64>() / (PER_VERTEX * count)).sqrt()
 }
 
 /// Area per vertex of the even triangle mesh with edges of length 1.

@@ -153,30 +153,32 @@ impl Solid {
         }
     }
 
-    /// The gradient at `p` by central differences over ±`step`.
-    pub fn gradient(&self, p: V3, step: f64) -> V3 {
-        let along = |d: V3| self.distance(p + d) - self.distance(p - d);
-        v(along(v(step, 0.0, 0.0)), along(v(0.0, step, 0.0)), along(v(0.0, 0.0, step))) * (0.5 / step)
+    /// The gradient at `p`, from the corners of a small tetrahedron around it.
+    pub fn gradient(&self, p: V3) -> V3 {
+        // Far below any radius of curvature, far above what rounding does to the field.
+        const STEP: f64 = 1e-5;
+        [v(1.0, -1.0, -1.0), v(-1.0, -1.0, 1.0), v(-1.0, 1.0, -1.0), v(1.0, 1.0, 1.0)]
+            .into_iter()
+            .fold(V3::default(), |sum, corner| sum + corner * self.distance(p + corner * STEP))
+            * (0.25 / STEP)
     }
 
-    /// The point of the surface that Newton's steps along the gradient lead to from `p`; `step` is the length over
-    /// which the field is differentiated, and no step is longer than `reach`.
-    pub fn project(&self, mut p: V3, step: f64, reach: f64) -> V3 {
+    /// The point of the surface that Newton's steps along the gradient lead to from `p`, none of them longer than
+    /// `reach`, and the surface's normal there.
+    pub fn project(&self, mut p: V3, reach: f64) -> (V3, V3) {
+        let mut slope = self.gradient(p);
         for _ in 0..4 {
             let value = self.distance(p);
-            if value.abs() < 1e-7 {
-                break;
-            }
-            let slope = self.gradient(p, step);
             let square = slope.dot(slope);
-            if square < 1e-4 {
+            if value.abs() < 1e-6 || square < 1e-4 {
                 break;
             }
-            let move_by = slope * (value / square);
-            let length = move_by.norm();
-            p = p - if length > reach { move_by * (reach / length) } else { move_by };
+            let along = slope * (value / square);
+            let length = along.norm();
+            p = p - if length > reach { along * (reach / length) } else { along };
+            slope = self.gradient(p);
         }
-        p
+        (p, slope.unit())
     }
 
     /// The greatest absolute normal curvature of the surface near `p`, whose unit normal is `normal`, seen over
@@ -245,8 +247,9 @@ mod tests {
     #[test]
     fn projection_and_curvature_of_a_ball() {
         let solid = ball(0.0, 0.5);
-        let p = solid.project(v(0.5, 0.3, -0.2), 1e-4, 1.0);
+        let (p, normal) = solid.project(v(0.5, 0.3, -0.2), 1.0);
         assert!((p.norm() - 0.5).abs() < 1e-6);
+        assert!((normal - p.unit()).norm() < 1e-3);
         let curvature = solid.curvature(p, p.unit(), 0.05);
         assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
     }

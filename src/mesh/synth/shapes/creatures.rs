@@ -12,10 +12,10 @@ const SIDE: V3 = v(0.0, 0.0, 1.0);
 
 /// Between a dog and a horse, walking.
 pub fn fourleg(random: &mut Random) -> Solid {
-    let girth = random.near(1.0, 0.17);
-    let leg = random.near(0.62, 0.14);
-    let back = random.near(0.42, 0.12);
-    let neck_length = random.near(0.36, 0.2);
+    let girth = random.near(1.0, 0.26);
+    let leg = random.near(0.58, 0.34);
+    let back = random.near(0.42, 0.24);
+    let neck_length = random.near(0.38, 0.5);
     let (rump, chest) = (v(-back, 0.0, 0.0), v(back, 0.02, 0.0));
     let trunk = Solid::union(
         0.15,
@@ -54,7 +54,7 @@ pub fn fourleg(random: &mut Random) -> Solid {
     let droop = degrees(random.between(-60.0, 40.0));
     let curl = degrees(random.about_zero(25.0));
     let wag = degrees(random.about_zero(30.0));
-    let length = random.near(0.5, 0.3) / 3.0;
+    let length = random.near(0.5, 0.5) / 3.0;
     let tail = (0..3).map(|i| ((-AHEAD).turned(SIDE, -droop - curl * f64::from(i)).turned(UP, wag), length));
     parts.push(tube(&walk(rump + v(-0.12, 0.09, 0.0), tail), &[0.055, 0.045, 0.04, 0.034]));
     Solid::union(0.06, parts)
@@ -62,9 +62,9 @@ pub fn fourleg(random: &mut Random) -> Solid {
 
 /// A mantle with eight arms that wave and curl.
 pub fn octopus(random: &mut Random) -> Solid {
-    let size = random.near(1.0, 0.13);
-    let reach = random.near(1.05, 0.12);
-    let thick = random.near(1.0, 0.12);
+    let size = random.near(1.0, 0.25);
+    let reach = random.near(1.05, 0.28);
+    let thick = random.near(1.05, 0.2);
     let lean = random.about_zero(0.12);
     let mantle = Frame::with_y(v(lean, 0.42, lean), v(lean, 1.0, -lean), AHEAD);
     let mut parts = vec![
@@ -94,10 +94,10 @@ pub fn octopus(random: &mut Random) -> Solid {
 
 /// Head, thorax and gaster, six jointed legs, two feelers.
 pub fn ant(random: &mut Random) -> Solid {
-    let plump = random.near(1.0, 0.14);
-    let stride = random.near(1.0, 0.12);
-    let thin = random.near(0.036, 0.12);
-    let gaster = random.near(0.36, 0.14);
+    let plump = random.near(1.0, 0.25);
+    let stride = random.near(1.0, 0.28);
+    let thin = random.near(0.038, 0.16);
+    let gaster = random.near(0.36, 0.32);
     let sag = degrees(random.between(-10.0, 25.0));
     let waist = v(-0.2, 0.0, 0.0);
     let behind = (-AHEAD).turned(SIDE, sag);
@@ -136,10 +136,10 @@ pub fn ant(random: &mut Random) -> Solid {
 
 /// A fish with its fins, bent as it swims.
 pub fn fish(random: &mut Random) -> Solid {
-    let length = random.near(0.75, 0.1);
-    let height = random.near(0.3, 0.2);
-    let width = random.near(0.16, 0.18);
-    let fin = random.near(1.0, 0.2);
+    let length = random.near(0.75, 0.24);
+    let height = random.near(0.28, 0.35);
+    let width = random.near(0.16, 0.3);
+    let fin = random.near(1.1, 0.35);
     let sheet = 0.026;
     let flat = |outline: Vec<[f64; 2]>| Solid::from(Primitive::plate(Frame::at(V3::default()), outline, sheet, 0.018));
     let tail = -length * 1.12;
@@ -184,11 +184,11 @@ pub fn fish(random: &mut Random) -> Solid {
 
 /// A bird in flight: wings bend at the shoulder and the wrist.
 pub fn bird(random: &mut Random) -> Solid {
-    let plump = random.near(1.0, 0.14);
-    let span = random.near(0.85, 0.13);
-    let chord = random.near(0.3, 0.12);
+    let plump = random.near(1.0, 0.25);
+    let span = random.near(0.85, 0.26);
+    let chord = random.near(0.3, 0.25);
     let neck_rise = degrees(random.between(0.0, 45.0));
-    let neck_length = random.near(0.2, 0.4);
+    let neck_length = random.near(0.22, 0.7);
     let neck = AHEAD.turned(SIDE, neck_rise);
     let points = walk(v(0.3, 0.06, 0.0), [(neck, neck_length), (AHEAD, 0.1)]);
     let beak = walk(points[2], [(AHEAD - UP * 0.15, 0.2)]);

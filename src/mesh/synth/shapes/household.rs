@@ -12,11 +12,11 @@ const SIDE: V3 = v(0.0, 0.0, 1.0);
 
 /// A cup with one handle.
 pub fn cup(random: &mut Random) -> Solid {
-    let height = random.near(0.9, 0.2);
-    let base = random.near(0.36, 0.15);
-    let rim = base * random.between(0.95, 1.35);
-    let belly = random.between(-0.02, 0.1);
-    let wall = random.between(0.085, 0.12);
+    let height = random.near(0.8, 0.35);
+    let base = random.near(0.36, 0.2);
+    let rim = base * random.between(0.95, 1.5);
+    let belly = random.between(-0.02, 0.12);
+    let wall = random.between(0.085, 0.13);
     let profile: Vec<[f64; 2]> = std::iter::once([0.0, 0.0])
         .chain((0..=8).map(|i| {
             let t = f64::from(i) / 8.0;
@@ -40,12 +40,12 @@ pub fn cup(random: &mut Random) -> Solid {
 
 /// A vase: foot, belly, neck and lip.
 pub fn vase(random: &mut Random) -> Solid {
-    let height = random.near(1.5, 0.12);
-    let foot = random.near(0.24, 0.15);
-    let belly = random.near(0.48, 0.14);
-    let neck = random.near(0.2, 0.2);
+    let height = random.near(1.4, 0.25);
+    let foot = random.near(0.26, 0.2);
+    let belly = random.near(0.48, 0.25);
+    let neck = random.near(0.22, 0.25);
     let lip = neck * random.between(1.2, 1.9);
-    let middle = random.between(0.36, 0.5);
+    let middle = random.between(0.33, 0.55);
     let collar = random.between(0.74, 0.84);
     let knots = [(0.0, foot), (middle, belly), (collar, neck), (1.0, lip)];
     let mut profile = vec![[0.0, 0.0]];
@@ -64,15 +64,15 @@ pub fn vase(random: &mut Random) -> Solid {
 
 /// A chair: seat, four legs, and a back of two posts and a board.
 pub fn chair(random: &mut Random) -> Solid {
-    let (half_x, half_z) = (random.near(0.34, 0.12), random.near(0.34, 0.12));
-    let leg = random.near(0.62, 0.16);
-    let back = random.near(0.72, 0.16);
-    let thick = random.between(0.045, 0.062);
+    let (half_x, half_z) = (random.near(0.34, 0.22), random.near(0.36, 0.25));
+    let leg = random.near(0.62, 0.35);
+    let back = random.near(0.74, 0.28);
+    let thick = random.between(0.045, 0.075);
     let seat = random.between(0.045, 0.06);
     let tilt = random.between(0.0, 0.2);
     let splay = random.between(0.0, 0.12);
-    let board = random.between(0.2, 0.34);
-    let plank = Primitive::cuboid(Frame::at(V3::default()), v(half_x + 0.05, seat, half_z + 0.05), 0.025);
+    let board = random.between(0.16, 0.36);
+    let plank = Primitive::cuboid(Frame::at(V3::default()), v(half_x + 0.05, seat, half_z + 0.05), 0.012);
     let mut parts = vec![Solid::from(plank)];
     for side in [-1.0, 1.0] {
         for end in [-1.0, 1.0] {
@@ -86,16 +86,17 @@ pub fn chair(random: &mut Random) -> Solid {
     let rise = v(-tilt * back, back, 0.0);
     let middle = v(-half_x * 0.97, 0.0, 0.0) + rise * (1.0 - 0.45 * board / back);
     let frame = Frame::with_y(middle, rise, AHEAD);
-    parts.push(Primitive::cuboid(frame, v(0.042, 0.5 * board, half_z * 0.9), 0.025).into());
+    parts.push(Primitive::cuboid(frame, v(0.042, 0.5 * board, half_z * 0.9), 0.012).into());
     Solid::union(0.03, parts)
 }
 
 /// Glasses: two rims, a bridge, and two sides that fold.
 pub fn glasses(random: &mut Random) -> Solid {
-    let rim = random.near(0.3, 0.12);
-    let tube_radius = random.between(0.042, 0.055);
+    let rim = random.near(0.31, 0.2);
+    let tube_radius = random.between(0.042, 0.068);
     let apart = rim + random.between(0.08, 0.14);
-    let oval = random.between(0.75, 1.05);
+    let oval = random.between(0.65, 1.05);
+    let side_length = random.near(0.85, 0.3);
     let mut parts = Vec::new();
     let facing = |at: V3| Frame { origin: at, x: SIDE, y: AHEAD, z: UP };
     for side in [-1.0, 1.0] {
@@ -106,7 +107,7 @@ pub fn glasses(random: &mut Random) -> Solid {
         let hinge = v(0.0, rim * oval * 0.35, side * (apart + rim * 0.98));
         let back = (-AHEAD).turned(UP, side * fold);
         let hook = back.turned(back.cross(UP).unit(), -degrees(random.between(25.0, 50.0)));
-        let length = random.near(0.85, 0.08);
+        let length = random.near(side_length, 0.03);
         let points = walk(hinge, [(SIDE * side, 0.05), (back, length), (hook, 0.3)]);
         parts.push(tube(&points, &[tube_radius, tube_radius, tube_radius * 0.9, tube_radius * 0.9]));
     }

@@ -13,23 +13,22 @@ const SIDE: V3 = v(0.0, 0.0, 1.0);
 /// Pliers: two crossed levers that open.
 pub fn pliers(random: &mut Random) -> Solid {
     let open = degrees(random.between(9.0, 26.0));
-    let jaw = random.near(0.42, 0.2);
-    let handle = random.near(1.1, 0.12);
-    let bow = random.near(0.16, 0.3);
-    let thick = random.near(0.066, 0.14);
+    let jaw = random.near(0.46, 0.4);
+    let handle = random.near(1.05, 0.28);
+    let bow = random.near(0.15, 0.5);
+    let thick = random.near(0.07, 0.22);
     let mut parts = Vec::new();
     for side in [-1.0, 1.0] {
         let turn = |x: f64, y: f64| v(x, side * y, 0.0).turned(SIDE, side * open);
-        // From the tip of the jaw above the axis over the pivot to the handle below it.
-        let points = [
-            turn(jaw, 0.035),
-            turn(0.55 * jaw, 0.1),
-            turn(0.0, 0.03),
-            turn(-0.25, -0.07),
-            turn(-0.25 - 0.4 * handle, -0.1 - bow),
-            turn(-0.25 - handle, -0.14 - 0.55 * bow),
-        ];
-        let radii = [0.55, 1.05, 1.35, 1.05, 0.95, 1.0].map(|r| r * thick);
+        // From the tip of the jaw above the axis over the pivot to the handle below it, which is bowed.
+        let mut points = vec![turn(jaw, 0.03), turn(0.75 * jaw, 0.075), turn(0.4 * jaw, 0.1), turn(0.0, 0.02)];
+        let mut radii = vec![0.55, 0.8, 1.15, 1.4];
+        for i in 0..=6 {
+            let t = f64::from(i) / 6.0;
+            points.push(turn(-0.2 - t * handle, -0.06 - bow * t * (2.6 - 1.9 * t)));
+            radii.push(0.95 + 0.15 * t);
+        }
+        let radii: Vec<f64> = radii.iter().map(|r| r * thick).collect();
         parts.push(tube(&points, &radii));
     }
     let pivot = Frame { origin: V3::default(), x: AHEAD, y: SIDE, z: -UP };
@@ -39,9 +38,9 @@ pub fn pliers(random: &mut Random) -> Solid {
 
 /// An angle bracket with two holes in its foot and one in its upright.
 pub fn bracket(random: &mut Random) -> Solid {
-    let (length, width, height) = (random.near(0.55, 0.15), random.near(0.36, 0.15), random.near(0.8, 0.15));
-    let thick = random.between(0.075, 0.105);
-    let round = 0.03;
+    let (length, width, height) = (random.near(0.58, 0.3), random.near(0.37, 0.25), random.near(0.8, 0.3));
+    let thick = random.between(0.065, 0.11);
+    let round = 0.012;
     let foot = Primitive::cuboid(Frame::at(v(0.0, thick, 0.0)), v(length, thick, width), round);
     let upright =
         Primitive::cuboid(Frame::at(v(-length + thick, 0.5 * height, 0.0)), v(thick, 0.5 * height, width), round);
@@ -57,15 +56,15 @@ pub fn bracket(random: &mut Random) -> Solid {
     }
     let bore = width * random.between(0.4, 0.62);
     holes.push(Primitive::cylinder(cap_frame, bore, 0.4, 0.0).into());
-    body.without(0.03, Solid::union(0.0, holes))
+    body.without(0.0, Solid::union(0.0, holes))
 }
 
 /// A gear wheel with a bore and four holes around it.
 pub fn gear(random: &mut Random) -> Solid {
-    let teeth = 10 + random.below(5);
-    let root = random.near(0.66, 0.06);
+    let teeth = 8 + random.below(3);
+    let root = random.near(0.66, 0.12);
     let tip = root + random.between(0.14, 0.2);
-    let half = random.near(0.13, 0.25);
+    let half = random.near(0.16, 0.4);
     let pitch = 360.0 / teeth as f64;
     let outline = (0..teeth)
         .flat_map(|i| [(0.08, root), (0.24, tip), (0.56, tip), (0.72, root)].map(|(t, r)| (i as f64 + t, r)))
@@ -80,7 +79,7 @@ pub fn gear(random: &mut Random) -> Solid {
     let wheel = Solid::union(
         0.03,
         [
-            Primitive::plate(flat, outline, half, 0.02).into(),
+            Primitive::plate(flat, outline, half, 0.008).into(),
             Primitive::cylinder(Frame::at(V3::default()), hub + 0.02, half + random.between(0.02, 0.12), 0.02).into(),
         ],
     );
@@ -91,16 +90,16 @@ pub fn gear(random: &mut Random) -> Solid {
         let (s, c) = sin_cos(degrees(90.0 * f64::from(i) + 20.0));
         holes.push(Primitive::cylinder(Frame::at(v(c * ring, 0.0, s * ring)), window, 1.0, 0.0).into());
     }
-    wheel.without(0.02, Solid::union(0.0, holes))
+    wheel.without(0.0, Solid::union(0.0, holes))
 }
 
-/// An airliner: wings, tail, two or four engines.
+/// An airplane: wings, tail, up to four engines.
 pub fn airplane(random: &mut Random) -> Solid {
-    let length = random.near(0.95, 0.1);
-    let girth = random.near(0.13, 0.12);
-    let span = random.near(0.95, 0.12);
-    let chord = random.near(0.36, 0.12);
-    let sweep = random.between(0.15, 0.6);
+    let length = random.near(0.95, 0.2);
+    let girth = random.near(0.13, 0.25);
+    let span = random.near(0.95, 0.3);
+    let chord = random.near(0.36, 0.25);
+    let sweep = random.between(0.0, 0.65);
     let rise = degrees(random.between(0.0, 9.0));
     let sheet = 0.032;
     let hull = tube(
@@ -118,7 +117,7 @@ pub fn airplane(random: &mut Random) -> Solid {
     let mut parts = vec![hull];
     let fin = Frame::at(v(-length * 0.84, girth * 0.4, 0.0));
     parts.push(Primitive::plate(fin, wing(0.36, 0.26, 0.22, 0.55), sheet, 0.02).into());
-    let engines = 1 + random.below(2);
+    let engines = random.below(3);
     for side in [-1.0, 1.0] {
         let out = (SIDE * side).turned(AHEAD, -side * rise);
         let root = v(0.1, -0.03, side * 0.06);

@@ -12,9 +12,10 @@ const SIDE: V3 = v(0.0, 0.0, 1.0);
 
 /// A person 1.7 units tall: arms and legs bend at shoulder, elbow, hip and knee.
 pub fn human(random: &mut Random) -> Solid {
-    let girth = random.near(1.0, 0.18);
-    let (leg, arm, trunk) = (random.near(1.0, 0.07), random.near(1.0, 0.08), random.near(1.0, 0.07));
-    let width = random.near(1.0, 0.1);
+    let girth = random.near(1.05, 0.32);
+    let (leg, arm, trunk) = (random.near(0.96, 0.2), random.near(1.0, 0.18), random.near(1.0, 0.12));
+    let width = random.near(1.0, 0.16);
+    let head = random.near(1.12, 0.2);
     let lean = degrees(random.between(-5.0, 15.0));
     let hip = v(0.0, 0.92, 0.0);
     // The upper body in its own frame, leaning about the hips.
@@ -31,7 +32,7 @@ pub fn human(random: &mut Random) -> Solid {
             Primitive::limb(up(0.0, 0.5, 0.0), up(0.01, 0.64, 0.0), 0.065, 0.055).into(),
         ],
     );
-    let mut parts = vec![core, body(up(0.02 + nod, 0.76, nod), v(0.105, 0.135, 0.09))];
+    let mut parts = vec![core, body(up(0.02 + nod, 0.76, nod), v(0.105, 0.135, 0.09) * head)];
     for side in [-1.0, 1.0] {
         parts.push(human_arm(random, up(0.0, 0.51, side * 0.185 * width), torso, side, arm, girth));
         parts.push(human_leg(random, hip + v(0.0, -0.02, side * 0.092 * width), side, leg, girth));
@@ -72,11 +73,12 @@ fn human_leg(random: &mut Random, hip: V3, side: f64, length: f64, girth: f64) -
 
 /// A hand with a piece of the arm; fingers bend at three joints.
 pub fn hand(random: &mut Random) -> Solid {
-    let girth = random.near(1.0, 0.13);
-    let length = random.near(1.0, 0.1);
-    let palm_half = v(0.34 * random.near(1.0, 0.08), 0.36, 0.115 * girth);
+    let girth = random.near(1.05, 0.25);
+    let length = random.near(1.0, 0.22);
+    let arm = random.between(0.28, 0.85);
+    let palm_half = v(0.34 * random.near(1.0, 0.12), 0.36, 0.115 * girth);
     let palm = Primitive::cuboid(Frame::at(v(0.0, 0.36, 0.0)), palm_half, 0.1 * girth);
-    let wrist = Primitive::ellipsoid(Frame::at(v(0.0, -0.1, 0.0)), v(0.22, 0.42, 0.145 * girth));
+    let wrist = Primitive::ellipsoid(Frame::at(v(0.0, 0.22 - arm, 0.0)), v(0.22, arm, 0.145 * girth));
     let mut parts = vec![Solid::union(0.14, [palm.into(), wrist.into()])];
     let fist = random.between(0.0, 1.0);
     let fan = random.between(0.8, 1.6);
@@ -107,8 +109,8 @@ pub fn hand(random: &mut Random) -> Solid {
 
 /// A bear that sits with its arms and legs stretched forwards.
 pub fn teddy(random: &mut Random) -> Solid {
-    let belly = random.near(0.42, 0.12);
-    let head = random.near(0.33, 0.1);
+    let belly = random.near(0.42, 0.2);
+    let head = random.near(0.34, 0.2);
     let neck = v(random.between(0.0, 0.08), 0.42 + 0.82 * belly + 0.5 * head, random.about_zero(0.05));
     let ball = |at: V3, radii: V3| Solid::from(Primitive::ellipsoid(Frame::at(at), radii));
     let mut parts = vec![
@@ -116,8 +118,8 @@ pub fn teddy(random: &mut Random) -> Solid {
         ball(neck, v(head * 0.95, head * 0.92, head * 1.05)),
         ball(neck + v(head * 0.85, -head * 0.18, 0.0), v(head * 0.42, head * 0.34, head * 0.4)),
     ];
-    let ear = random.near(0.4, 0.2);
-    let plump = random.near(1.0, 0.15);
+    let ear = random.near(0.42, 0.28);
+    let plump = random.near(1.0, 0.22);
     for side in [-1.0, 1.0] {
         let ear_at = neck + v(-0.02, head * 0.74, side * head * 0.76);
         parts.push(ball(ear_at, v(head * ear * 0.5, head * ear, head * ear)));
@@ -125,11 +127,11 @@ pub fn teddy(random: &mut Random) -> Solid {
         let spread = degrees(random.between(10.0, 65.0));
         let arm = AHEAD.turned(UP, -side * spread).turned(SIDE, lift);
         let shoulder = v(0.06, 0.42 + belly * 0.62, side * belly * 0.78);
-        parts.push(tube(&walk(shoulder, [(arm, random.near(0.42, 0.15))]), &[0.145 * plump, 0.12 * plump]));
+        parts.push(tube(&walk(shoulder, [(arm, random.near(0.44, 0.28))]), &[0.145 * plump, 0.12 * plump]));
         let open = degrees(random.between(14.0, 40.0));
         let leg = AHEAD.turned(UP, -side * open).turned(SIDE, degrees(random.between(-8.0, 12.0)));
         let hip = v(0.12, 0.14, side * belly * 0.62);
-        let points = walk(hip, [(leg, random.near(0.48, 0.12))]);
+        let points = walk(hip, [(leg, random.near(0.5, 0.25))]);
         parts.push(tube(&points, &[0.175 * plump, 0.15 * plump]));
         let sole = Frame::with_y(points[1] + leg * 0.05 + v(0.0, 0.06, 0.0), UP, leg);
         parts.push(Primitive::ellipsoid(sole, v(0.1, 0.21, 0.15) * plump).into());
