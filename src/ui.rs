@@ -27,6 +27,7 @@ mod curves;
 mod dots;
 mod footer;
 mod header;
+mod heading;
 mod help;
 mod look;
 mod models;

@@ -14,6 +14,7 @@
 
 use super::{
     dots::Stroke,
+    heading::{Note, heading, note, nothing},
     look::Role,
     number,
     pane::{self, Pane},
@@ -60,29 +61,6 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     chart(state, Figure::Adr, &mut pane.part(rest), false);
 }
 
-/// A heading with a word on what is stale; returns the column after it.
-pub(super) fn heading(pane: &mut Pane<'_>, y: u16, title: &str, stale: bool) -> u16 {
-    let room = (pane.width() as usize).saturating_sub(1);
-    let x = pane.put(1, y, &text::fit(title, room), Role::Strong);
-    let mark = if pane.width() >= 40 { "  ◌ stale" } else { " ◌" };
-    if stale { pane.put(x, y, mark, Role::Warn) } else { x }
-}
-
-/// What stands where nothing is there to be shown.
-pub(super) fn nothing(state: &State, pane: &mut Pane<'_>, y: u16) {
-    let progress = &state.answer.progress;
-    let message = if state.fatal.is_some() {
-        "the engine has ended"
-    } else if !progress.complete() || progress.total == 0 {
-        "waiting for spectra"
-    } else if state.answer.members.is_empty() {
-        "no model takes part: see Models"
-    } else {
-        "not there yet"
-    };
-    pane.put(1, y, &text::fit(message, (pane.width() as usize).saturating_sub(1)), Role::Faint);
-}
-
 fn both(score: Option<Score>) -> String {
     let (train, query) = number::score(score);
     match score.and_then(|score| score.query) {
@@ -95,11 +73,11 @@ fn both(score: Option<Score>) -> String {
 pub(super) fn chart(state: &State, figure: Figure, pane: &mut Pane<'_>, small: bool) {
     let stale = state.stale(&state.answer.first_k, Stage::FirstK);
     let title = if small { figure.name().to_owned() } else { format!("{} against k", figure.name()) };
-    let after = heading(pane, 0, &title, stale && state.answer.first_k.value.is_some());
     let Some(first_k) = &state.answer.first_k.value else {
-        nothing(state, pane, 1);
-        return;
+        heading(pane, 0, &title, Note::Settled);
+        return nothing(state, pane, 1);
     };
+    let after = heading(pane, 0, &title, note(state, stale));
     let (curve, best) = figure.curve(first_k);
     let kmax = curve.train.len();
     let k = state.settings.k;

@@ -18,8 +18,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     match (&state.entry, &state.fatal, &state.notice) {
         (Some(entry), ..) => typing(state, entry, pane),
         (None, Some(reason), _) => line(pane, "×", reason, Role::Bad),
-        (None, None, Some(Notice { text, bad: true })) => line(pane, "×", text, Role::Bad),
-        (None, None, Some(Notice { text, bad: false })) => line(pane, "·", text, Role::Plain),
+        (None, None, Some(Notice { text, bad: true, .. })) => line(pane, "×", text, Role::Bad),
+        (None, None, Some(Notice { text, bad: false, .. })) => line(pane, "·", text, Role::Plain),
         (None, None, None) => progress(state, pane),
     }
     hints(state, pane);

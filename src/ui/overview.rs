@@ -16,6 +16,7 @@ use ratatui::layout::Rect;
 
 use super::{
     curves::{self, Figure},
+    heading::{Note, note},
     look::Role,
     number,
     pane::{self, Pane},
@@ -80,6 +81,11 @@ fn methods(state: &State, pane: &mut Pane<'_>) {
     let wide = pane.width() as usize;
     let name = if wide >= 60 { 18 } else { 15 };
     let from = 2;
+    if let Note::Partial(some, all) = note(state, false) {
+        let over = [format!("{some} of {all} models"), format!("{some} of {all}")];
+        let fitting = over.into_iter().find(|over| text::width(over) <= name + 1).unwrap_or_default();
+        pane.put(from as u16, 0, &fitting, Role::Warn);
+    }
     for (column, head) in (0..).zip(["ε D", "ε Q", "ADR D", "ADR Q"]) {
         pane.put_right((from + name + FIGURE * (column + 1)) as u16, 0, head, Role::Faint);
     }

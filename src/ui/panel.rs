@@ -108,7 +108,7 @@ fn words(state: &State, pane: &mut Pane<'_>) {
     }
     let mut y = 0;
     // The words of a parameter's choices are in its description already where they need explaining.
-    let explained = matches!(parameter, Parameter::Mass | Parameter::Distance | Parameter::Sel);
+    let explained = !parameter.choices().is_empty() && parameter != Parameter::Operator;
     let takes = if explained { String::new() } else { takes };
     let about = match (parameter, idle(state, parameter)) {
         (Parameter::Mass, true) => "without effect on cot, which has no mass matrix",

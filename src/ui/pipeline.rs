@@ -17,7 +17,7 @@
 //! The stages that the chosen parameter would run again carry `‹`.
 
 use super::{
-    curves,
+    heading::{Note, heading},
     look::Role,
     number,
     pane::{self, Pane},
@@ -122,7 +122,7 @@ fn warnings(state: &State, pane: &mut Pane<'_>) {
         return;
     }
     let title = if warnings.is_empty() { "No warnings".to_owned() } else { format!("Warnings ({})", warnings.len()) };
-    curves::heading(pane, 0, &title, false);
+    heading(pane, 0, &title, Note::Settled);
     let room = (pane.width() as usize).saturating_sub(4);
     let height = pane.height() as usize - 1;
     // The newest come last in the answer and first here.

@@ -13,7 +13,8 @@
 //! On small screens one of the map, Figure 4 and the way of hill climbing; on large ones all three.
 
 use super::{
-    curves, footer,
+    footer,
+    heading::{Note, heading, note, nothing},
     look::Role,
     number,
     pane::{self, Pane},
@@ -65,32 +66,26 @@ fn stale(state: &State) -> bool {
 
 /// Figure 5.
 pub(super) fn map(state: &State, pane: &mut Pane<'_>) {
-    let marks = state.answer.marks.value.as_deref();
-    curves::heading(
-        pane,
-        0,
-        &format!("Figure 5: bands selected, {}", bands::unit(state.settings.normalisation)),
-        stale(state) && marks.is_some(),
-    );
-    let Some(marks) = marks else { return curves::nothing(state, pane, 1) };
-    let mut rest = pane.area();
-    pane::cut_top(&mut rest, 1);
-    let mut pane = pane.part(pane::inset(rest, 1));
-    bands::draw(state, marks, &mut pane);
-    if stale(state) {
-        pane.fade();
-    }
+    let title = format!("Figure 5: bands selected, {}", bands::unit(state.settings.normalisation));
+    figure(state, &title, bands::draw, pane);
 }
 
 /// Figure 4.
 fn scatter(state: &State, pane: &mut Pane<'_>) {
-    let marks = state.answer.marks.value.as_deref();
-    curves::heading(pane, 0, "Figure 4: eigenvalues selected", stale(state) && marks.is_some());
-    let Some(marks) = marks else { return curves::nothing(state, pane, 1) };
+    figure(state, "Figure 4: eigenvalues selected", scatter::draw, pane);
+}
+
+/// A figure made of the marks, below its title.
+fn figure(state: &State, title: &str, draw: fn(&State, &[Vec<Mark>], &mut Pane<'_>), pane: &mut Pane<'_>) {
+    let Some(marks) = state.answer.marks.value.as_deref() else {
+        heading(pane, 0, title, Note::Settled);
+        return nothing(state, pane, 1);
+    };
+    heading(pane, 0, title, note(state, stale(state)));
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let mut pane = pane.part(pane::inset(rest, 1));
-    scatter::draw(state, marks, &mut pane);
+    draw(state, marks, &mut pane);
     if stale(state) {
         pane.fade();
     }

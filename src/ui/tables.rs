@@ -12,7 +12,7 @@
 use ratatui::{layout::Rect, style::Modifier};
 
 use super::{
-    curves,
+    heading::{Note, heading, note, nothing},
     look::Role,
     number,
     pane::{self, Pane},
@@ -32,14 +32,14 @@ const LEAST: usize = 6;
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let Some(tables) = &state.answer.tables.value else {
-        curves::heading(pane, 0, "Tables", false);
-        curves::nothing(state, pane, 1);
+        heading(pane, 0, "Tables", Note::Settled);
+        nothing(state, pane, 1);
         return;
     };
-    let stale = state.stale(&state.answer.tables, Stage::Tables);
+    let note = note(state, state.stale(&state.answer.tables, Stage::Tables));
     let across = if pane.width() >= 150 { 2 } else { 1 };
     let width = pane.width() / across;
-    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(table, stale, width)).collect();
+    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(table, note, width)).collect();
     // In reading order, each line of tables as high as its highest.
     let lines: Vec<(&[Sheet], u16)> = sheets
         .chunks(across as usize)
@@ -83,11 +83,11 @@ struct Sheet {
     lines: Vec<(Kind, Vec<String>)>,
     widths: Vec<usize>,
     numeric: Vec<bool>,
-    stale: bool,
+    note: Note,
 }
 
 impl Sheet {
-    fn new(table: &Table, stale: bool, width: u16) -> Self {
+    fn new(table: &Table, note: Note, width: u16) -> Self {
         let room = (width as usize).saturating_sub(2);
         let title = text::wrap(&tight(&format!("Table {}: {}", table.number, table.title)), room);
         let columns: Vec<String> = table.columns.iter().map(|head| tight(head)).collect();
@@ -108,7 +108,7 @@ impl Sheet {
         let mut lines: Vec<(Kind, Vec<String>)> = title.into_iter().map(|line| (Kind::Title, vec![line])).collect();
         lines.extend((0..high).map(head));
         lines.extend(rows.into_iter().map(|row| (Kind::Row, row)));
-        Self { lines, widths, numeric: (0..columns.len()).map(|column| !words(column)).collect(), stale }
+        Self { lines, widths, numeric: (0..columns.len()).map(|column| !words(column)).collect(), note }
     }
 
     /// Draws it with its first line at `top`, which may lie above the pane.
@@ -118,11 +118,16 @@ impl Sheet {
             let Some(y) = u16::try_from(top + line).ok().filter(|y| *y < pane.height()) else { continue };
             if *kind == Kind::Title {
                 let last = line as usize + 1 == titles;
-                curves::heading(pane, y, cells.first().map_or("", String::as_str), self.stale && last);
+                heading(
+                    pane,
+                    y,
+                    cells.first().map_or("", String::as_str),
+                    if last { self.note } else { Note::Settled },
+                );
                 continue;
             }
             self.cells(*kind, cells, y, pane);
-            if self.stale && *kind == Kind::Row {
+            if self.note == Note::Stale && *kind == Kind::Row {
                 let area = Rect { y: pane.area().y + y, height: 1, ..pane.area() };
                 pane.part(area).fade();
             }

@@ -61,13 +61,15 @@ pub enum Figure {
     Climb,
 }
 
-/// A line for the user, shown until the next key.
+/// A line for the user, shown until the next key, or only until the next answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
     /// What it says.
     pub text: String,
     /// True when something went wrong.
     pub bad: bool,
+    /// True when the next answer says more.
+    pub brief: bool,
 }
 
 /// Everything the screen shows.

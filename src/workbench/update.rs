@@ -16,7 +16,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Suspend => return vec![Effect::Suspend],
         Action::Redraw => return vec![Effect::Redraw],
         Action::Rescan => {
-            say(state, "looking at the files again");
+            state.notice = Some(Notice { text: "looking at the files again".to_owned(), bad: false, brief: true });
             return vec![Effect::Send(Command::Rescan)];
         }
         Action::ToggleSolving => return toggle_solving(state),
@@ -33,7 +33,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Commit => return commit(state),
         Action::Answer(answer) => receive(state, answer),
         Action::Fatal(reason) => state.fatal = Some(reason),
-        Action::Report(text) => state.notice = Some(Notice { text, bad: true }),
+        Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
         Action::Insert(_) | Action::Erase | Action::EraseAll | Action::Left | Action::Right => typed(state, &action),
         Action::Edit => state.entry = Some(Entry::default()),
@@ -80,7 +80,7 @@ fn look(state: &mut State, action: &Action) {
 }
 
 fn say(state: &mut State, text: impl Into<String>) {
-    state.notice = Some(Notice { text: text.into(), bad: false });
+    state.notice = Some(Notice { text: text.into(), bad: false, brief: false });
 }
 
 fn toggle_solving(state: &mut State) -> Vec<Effect> {
@@ -247,6 +247,7 @@ fn receive(state: &mut State, answer: Arc<Answer>) {
         return;
     }
     state.answer = answer;
+    state.notice.take_if(|notice| notice.brief);
     let classes = state.answer.classes.len();
     state.compared.retain(|class| *class < classes);
     state.scroll = state.scroll.min(furthest(state));

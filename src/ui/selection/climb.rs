@@ -9,8 +9,8 @@
 //! ```
 
 use super::super::{
-    curves,
     dots::Stroke,
+    heading::{Note, heading, note, nothing},
     look::Role,
     number,
     pane::{self, Pane},
@@ -26,12 +26,12 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     };
     let stale = state.stale(part, stage);
     let Some(climbed) = &part.value else {
-        curves::heading(pane, 0, &format!("Hill climbing for {name}"), false);
-        return curves::nothing(state, pane, 1);
+        heading(pane, 0, &format!("Hill climbing for {name}"), Note::Settled);
+        return nothing(state, pane, 1);
     };
     let climb = &climbed.climb;
     let title = format!("Hill climbing for {name}: {}", number::count(climb.selected.len(), "eigenvalue"));
-    curves::heading(pane, 0, &title, stale);
+    heading(pane, 0, &title, note(state, stale));
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let moves: Vec<String> = climb

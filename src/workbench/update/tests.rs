@@ -265,6 +265,11 @@ fn a_notice_lasts_until_the_next_key_and_not_until_the_next_answer() {
     assert!(state.notice.is_some());
     update(&mut state, Action::Down);
     assert_eq!(state.notice, None);
+    assert_eq!(update(&mut state, Action::Rescan), [Effect::Send(Command::Rescan)]);
+    assert!(state.notice.is_some());
+    let found = answer(3, &state.settings);
+    update(&mut state, Action::Answer(found));
+    assert_eq!(state.notice, None, "this one only fills the time until the next answer");
 }
 
 #[test]
