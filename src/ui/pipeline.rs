@@ -131,6 +131,8 @@ fn warnings(state: &State, pane: &mut Pane<'_>) {
         .rev()
         .flat_map(|warning| text::wrap(warning, room).into_iter().enumerate().map(|(n, line)| (n == 0, line)))
         .collect();
+    // The last line says that there is more.
+    let height = if lines.len() > height { height - 1 } else { height };
     let scroll = state.scroll.min(lines.len().saturating_sub(height));
     for (y, (first, line)) in (1..).zip(lines.iter().skip(scroll).take(height)) {
         pane.put(1, y, if *first { "!" } else { " " }, Role::Warn);
