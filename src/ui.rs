@@ -44,7 +44,7 @@ mod text;
 /// Below this many columns or rows there is one line that says so.
 const LEAST: (u16, u16) = (24, 6);
 /// From this many columns on, the parameters stand beside the view.
-const BESIDE: (u16, u16) = (78, 17);
+const BESIDE: (u16, u16) = (80, 17);
 
 /// Draws the state.
 pub fn render(state: &State, look: Look, frame: &mut Frame<'_>) {

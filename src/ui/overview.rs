@@ -33,15 +33,17 @@ use crate::{
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
     let large = rest.width >= 110 && rest.height >= 34;
-    let high = if large { rest.height * 2 / 5 } else { rest.height.saturating_sub(METHODS + 3) };
-    if high >= 5 {
+    // The pipeline's two lines give way before the curves do.
+    let beside = |others: u16| rest.height.checked_sub(METHODS + others).filter(|high| *high >= LEAST);
+    let high = if large { Some(rest.height * 2 / 5) } else { beside(3).or_else(|| beside(0)) };
+    if let Some(high) = high {
         let mut upper = pane::cut_top(&mut rest, high);
         let half = upper.width / 2;
         let one = pane::cut_left(&mut upper, half);
         curves::chart(state, Figure::Error, &mut pane.part(one), true);
         curves::chart(state, Figure::Adr, &mut pane.part(upper), true);
     }
-    let gap = u16::from(high >= 5 && rest.height > METHODS);
+    let gap = u16::from(high.is_some() && rest.height > METHODS);
     pane::cut_top(&mut rest, gap);
     if large {
         let half = rest.width / 2;
@@ -56,6 +58,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     }
 }
 
+/// Below so many lines there are no curves.
+const LEAST: u16 = 5;
 /// Lines of the methods' table.
 const METHODS: u16 = 6;
 /// Columns of a figure.
