@@ -235,6 +235,7 @@ impl Host {
         let classes = Arc::new(data.classes.clone());
         let files = &mut self.files;
         let rows = &mut self.rows;
+        let troubled = self.failure.is_some();
         let same_classes = *classes == *self.classes;
         self.database.write(|db| {
             if !same_classes {
@@ -253,8 +254,10 @@ impl Host {
                 if file.role(db) != model.role {
                     file.set_role(db).to(model.role);
                 }
+                // What failed at its bytes is read again: the file may have been in the middle of a change.
+                let failed = troubled || old.get(&file).is_some_and(Row::unread);
                 let moved = file.stamp(db) != stamp;
-                if moved {
+                if moved || failed {
                     file.set_stamp(db).to(stamp);
                 }
                 let fresh = Row { file, job: None, facts: None, found: None, working: None };
@@ -356,6 +359,11 @@ impl Host {
             Some(Err(_)) => true,
             None => false,
         })
+    }
+
+    /// Whether some files could not be read as they were when the folder was last looked at.
+    pub(crate) fn unread(&self) -> bool {
+        self.failure.is_some() || self.rows.iter().any(Row::unread)
     }
 
     /// Says something to the user besides the answers.

@@ -58,6 +58,9 @@ pub struct Worker {
 const PATIENCE: Duration = Duration::from_millis(100);
 /// After a change of parameters the first answer waits so long for the new values, so that the screen changes once.
 const GRACE: Duration = Duration::from_millis(12);
+/// So often is a file that could not be read looked at again by itself, and after so long.
+const LOOKS: u8 = 5;
+const LOOK: Duration = Duration::from_millis(400);
 /// Progress is told so often at most.
 const PROGRESS: Duration = Duration::from_millis(100);
 
@@ -115,6 +118,9 @@ struct Desk<'a> {
     studies: u64,
     publish_at: Option<Instant>,
     saved: bool,
+    /// Looks at the folder that are left for files that were in the middle of a change, and when the next one is due.
+    looks: u8,
+    look_at: Option<Instant>,
 }
 
 impl<'a> Desk<'a> {
@@ -140,6 +146,8 @@ impl<'a> Desk<'a> {
             studies: 0,
             publish_at: Some(now),
             saved: false,
+            looks: LOOKS,
+            look_at: None,
         }
     }
 
@@ -164,7 +172,10 @@ impl<'a> Desk<'a> {
                         self.host.save();
                         return;
                     }
-                    Message::Command(command) => self.obey(&command),
+                    Message::Command(command) => {
+                        self.looks = LOOKS;
+                        self.obey(&command);
+                    }
                     Message::News(news) => {
                         self.host.hear(news);
                         self.publish_within(PROGRESS);
@@ -179,6 +190,7 @@ impl<'a> Desk<'a> {
                 self.restudy();
                 self.publish_within(GRACE);
             }
+            self.look_again();
             self.begin_study();
             if self.publish_at.is_some_and(|at| at <= Instant::now()) {
                 self.publish_at = None;
@@ -205,6 +217,17 @@ impl<'a> Desk<'a> {
             Command::Set(_) | Command::Quit => {}
         }
         self.publish_within(GRACE);
+    }
+
+    /// A file that is written while it is read comes right by itself.
+    fn look_again(&mut self) {
+        if self.look_at.is_some_and(|at| at <= Instant::now()) {
+            self.look_at = None;
+            self.looks -= 1;
+            self.obey(&Command::Rescan);
+        } else if self.look_at.is_none() && self.looks > 0 && self.host.complete() && self.host.unread() {
+            self.look_at = Some(Instant::now() + LOOK);
+        }
     }
 
     /// Forgets the study under way: the host's write has ended it.
@@ -265,7 +288,7 @@ impl<'a> Desk<'a> {
     /// How long nothing needs to be done, unless a message comes; none for ever.
     fn wait(&self) -> Option<Duration> {
         let study = (self.study.is_none() && self.host.members() != self.studied).then_some(self.next_study);
-        let at = [self.publish_at, study].into_iter().flatten().min()?;
+        let at = [self.publish_at, study, self.look_at].into_iter().flatten().min()?;
         Some(at.saturating_duration_since(Instant::now()))
     }
 }

@@ -148,6 +148,11 @@ impl Host {
 }
 
 impl Row {
+    /// Whether the file's bytes could not be had.
+    pub(super) fn unread(&self) -> bool {
+        matches!(self.found, Some(Err((Stage::Content, _))))
+    }
+
     fn failed(&self) -> bool {
         matches!(self.found, Some(Err(_)))
     }
