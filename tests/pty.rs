@@ -154,6 +154,7 @@ fn window_program() {
 fn a_closed_window_ends_the_program() {
     let mut window = std::process::Command::new(std::env::current_exe().unwrap())
         .args(["--ignored", "--exact", "window_program", "--nocapture", "--test-threads=1"])
+        .env(seat::SMALL, seat::small())
         .stdout(std::process::Stdio::piped())
         .spawn()
         .unwrap();
