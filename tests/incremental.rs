@@ -8,6 +8,7 @@ use std::{
     fs,
     path::Path,
     sync::atomic::{AtomicUsize, Ordering},
+    time::Duration,
 };
 
 use eigenselect::{
@@ -131,6 +132,8 @@ fn a_second_start_solves_nothing_and_a_touched_file_is_only_hashed() {
     let folder = common::scratch();
     let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
     let files = common::write_data(&data, 3, 4);
+    // Until then a file may be written again without its times telling, and every look hashes it anew.
+    std::thread::sleep(Duration::from_millis(2100));
     let first = host(&data, &cache, small(30)).run(&Unwatched).unwrap();
     let mut host = host(&data, &cache, small(30));
     let second = host.run(&Unwatched).unwrap();

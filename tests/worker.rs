@@ -12,7 +12,7 @@ use std::{
 
 use eigenselect::{
     dataset,
-    query::{Answer, Config, Host, Settings},
+    query::{Answer, Config, Host, ModelState, Settings},
     spectrum::Normalisation,
     store::Store,
     watch::Unwatched,
@@ -139,4 +139,36 @@ fn a_folder_that_is_not_there_is_told() {
         Update::Fatal(reason) => assert!(reason.contains("nowhere"), "{reason}"),
         Update::Answer(_) => panic!("an answer from nowhere"),
     }
+}
+
+#[test]
+fn files_that_vanish_after_they_were_solved_are_studied_and_others_are_out_by_name() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    let files = common::write_data(&data, 3, 60);
+    let mut setup = setup(&data, &cache, &small());
+    setup.threads = 1;
+    let (worker, updates) = spawn(setup.clone());
+    // In the middle of the solving all files go, those that are solved and those that are not.
+    wait_for(&updates, |answer| answer.progress.ready >= 8);
+    let away = folder.path().join("away");
+    std::fs::rename(&data, &away).unwrap();
+    let answer = wait_for(&updates, settled);
+    assert!(answer.progress.ready >= 8, "{:?}", answer.progress);
+    assert_eq!(answer.members.len(), answer.progress.ready);
+    for model in answer.models.iter() {
+        if let ModelState::Out { reason } = &model.state {
+            assert!(reason.contains("cannot be read") || reason.contains("gone"), "{reason}");
+        }
+    }
+    // Once they are back they come in by themselves.
+    std::fs::rename(&away, &data).unwrap();
+    let answer = wait_for(&updates, |answer| answer.progress.ready == files.len() && settled(answer));
+    assert_eq!(answer.members.len(), files.len());
+    drop(worker);
+    // In the next session one of them is missing from the start.
+    std::fs::remove_file(&files[0]).unwrap();
+    let (_worker, updates) = spawn(setup);
+    let answer = wait_for(&updates, settled);
+    assert_eq!(answer.members.len(), files.len() - 1);
 }

@@ -229,7 +229,7 @@ fn file_at(db: &dyn Db, file: ModelFile) -> Result<FileAt<'_>, Failure> {
 /// The file's bytes → what is known of the mesh.
 #[salsa::tracked(returns(clone))]
 pub(crate) fn facts(db: &dyn Db, file: ModelFile) -> Result<Arc<Facts>, Failure> {
-    let facts = file_at(db, file).and_then(|file| db.library().facts(file));
+    let facts = file_at(db, file).and_then(|file| db.library().facts(file).map_err(|failure| failure.reason));
     trace(db).executed(Query::Facts);
     facts
 }
@@ -242,7 +242,7 @@ pub(crate) fn spectrum<'db>(db: &'db dyn Db, key: SpectrumKey<'db>) -> Result<Ar
         let file = file_at(db, file)?;
         match db.library().spectrum(file, &facts, key.choice(db), key.count(db), db.revoked()) {
             Ok(found) => Ok(found.spectrum),
-            Err(Missing::Failed(reason)) => Err(reason),
+            Err(Missing::Failed(reason) | Missing::Unread(reason)) => Err(reason),
             Err(Missing::Cancelled) => leave(db),
         }
     });
@@ -256,7 +256,9 @@ pub(crate) fn sample<'db>(db: &'db dyn Db, key: SampleKey<'db>) -> Result<Arc<Sa
     let cohort = key.cohort(db);
     let spectra = cohort.members(db).iter().map(|&file| {
         let key = SpectrumKey::new(db, file, key.choice(db), cohort.reach(db));
-        spectrum(db, key).map(|spectrum| (file, spectrum))
+        // The others' spectra are there; this one's reason must say whose it is.
+        let named = |reason| Failure::from(format!("{}: {reason}", file.path(db).display()));
+        spectrum(db, key).map(|spectrum| (file, spectrum)).map_err(named)
     });
     let spectra: Vec<_> = spectra.collect::<Result<_, _>>()?;
     Ok(trace(db).run(Query::Sample, Stage::Features, || {

@@ -236,6 +236,7 @@ impl Host {
         let files = &mut self.files;
         let rows = &mut self.rows;
         let troubled = self.failure.is_some();
+        let doubted = self.library.doubt_fresh();
         let same_classes = *classes == *self.classes;
         self.database.write(|db| {
             if !same_classes {
@@ -257,7 +258,7 @@ impl Host {
                 // What failed at its bytes is read again: the file may have been in the middle of a change.
                 let failed = troubled || old.get(&file).is_some_and(Row::unread);
                 let moved = file.stamp(db) != stamp;
-                if moved || failed {
+                if moved || failed || doubted.contains(&model.path) {
                     file.set_stamp(db).to(stamp);
                 }
                 let fresh = Row { file, job: None, facts: None, found: None, working: None };

@@ -60,6 +60,8 @@ pub(crate) enum Missing {
     Cancelled,
     /// There is none to be had.
     Failed(Failure),
+    /// The file could not be read as it was when the folder was looked at.
+    Unread(Failure),
 }
 
 /// Increase when readers or checks would say something else of the same bytes.
@@ -68,6 +70,8 @@ const READER: u64 = 1;
 #[derive(Debug, Default)]
 struct Memory {
     contents: HashMap<PathBuf, (Stamp, ContentHash)>,
+    /// The same for files whose stamps are too fresh to be told from later ones: until the next look at the folder.
+    fresh: HashMap<PathBuf, (Stamp, ContentHash)>,
     facts: HashMap<(ContentHash, Format), Result<Arc<Facts>, Failure>>,
     spectra: HashMap<(GeometryHash, Choice), Found>,
     refused: HashMap<(GeometryHash, Choice), Failure>,
@@ -115,24 +119,33 @@ impl Library {
 
     /// The hash of the file's bytes, from its stamp when that was seen before.
     pub(crate) fn content(&self, path: &Path, stamp: Stamp) -> Result<ContentHash, Failure> {
-        if let Some(&(seen, content)) = self.memory().contents.get(path)
-            && seen == stamp
         {
-            return Ok(content);
+            let memory = self.memory();
+            let mut known = [&memory.contents, &memory.fresh].into_iter().filter_map(|hashes| hashes.get(path));
+            if let Some(&(_, content)) = known.find(|(seen, _)| *seen == stamp) {
+                return Ok(content);
+            }
         }
         let start = Instant::now();
         let content = ContentHash::of(&read(path)?);
         if Stamp::of(path) != Some(stamp) {
             return Err("the file is being changed; it is read again at the next look at the folder".into());
         }
-        // A stamp that is too fresh to be told from a later one is not kept.
+        let mut memory = self.memory();
         if stamp.settled() {
-            let mut memory = self.memory();
             memory.contents.insert(path.to_owned(), (stamp, content));
             memory.contents_unsaved = true;
+        } else {
+            memory.fresh.insert(path.to_owned(), (stamp, content));
         }
+        drop(memory);
         self.trace().made(Stage::Content, Source::Ran, start.elapsed());
         Ok(content)
+    }
+
+    /// Takes another look at files whose stamps could not stand for their content: returns their paths.
+    pub(crate) fn doubt_fresh(&self) -> HashSet<PathBuf> {
+        std::mem::take(&mut self.memory().fresh).into_keys().collect()
     }
 
     /// Writes the content hashes for the next session, if there are new ones.
@@ -148,10 +161,10 @@ impl Library {
     }
 
     /// What is known of the mesh in `file`. A file that cannot be read as a mesh fails with its defect.
-    pub(crate) fn facts(&self, file: FileAt<'_>) -> Result<Arc<Facts>, Failure> {
+    pub(crate) fn facts(&self, file: FileAt<'_>) -> Result<Arc<Facts>, Unread> {
         let name = (file.content, file.format);
         if let Some(known) = self.memory().facts.get(&name) {
-            return known.clone();
+            return known.clone().map_err(|reason| Unread { reason, decided: true });
         }
         let start = Instant::now();
         let key = Key::new("facts").number(READER).field(&file.content.0).number(file.format as u64);
@@ -169,7 +182,7 @@ impl Library {
             self.memory().facts.insert(name, facts.clone().map_err(|failure| failure.reason));
         }
         self.trace().made(Stage::Survey, source, start.elapsed());
-        facts.map_err(|failure| failure.reason)
+        facts
     }
 
     /// At least `count` eigenvalues of the mesh in `file`, or all it has.
@@ -242,7 +255,7 @@ impl Library {
         }
         let begun_key = key_of("begun");
         let known = self.known_bands(name, stored, &begun_key);
-        let mesh = load(file).map_err(|failure| Missing::Failed(failure.reason))?;
+        let mesh = load(file)?;
         match spectrum::solve(&mesh.canonical(), choice, count, &known, watch) {
             Ok(spectrum) => {
                 self.0.store.update::<Spectrum>(&key, |stored| {
@@ -294,10 +307,16 @@ fn suffices(spectrum: &Spectrum, count: usize) -> bool {
 
 /// Why a file is no mesh.
 #[derive(Debug, Clone)]
-struct Unread {
-    reason: Failure,
+pub(crate) struct Unread {
+    pub(crate) reason: Failure,
     /// Whether the bytes decide it, so that it holds as long as they do.
-    decided: bool,
+    pub(crate) decided: bool,
+}
+
+impl From<Unread> for Missing {
+    fn from(Unread { reason, decided }: Unread) -> Self {
+        if decided { Self::Failed(reason) } else { Self::Unread(reason) }
+    }
 }
 
 impl From<Failure> for Unread {

@@ -167,6 +167,7 @@ fn work(shared: &Shared, thread: usize) {
         let found = match found {
             Ok(found) => Some(Ok(found)),
             Err((stage, Missing::Failed(reason))) => Some(Err((stage, reason))),
+            Err((_, Missing::Unread(reason))) => Some(Err((Stage::Content, reason))),
             Err((_, Missing::Cancelled)) => None,
         };
         // Under the lock, so that a new list finds the job either still running or finished for the old list.
@@ -178,11 +179,11 @@ fn work(shared: &Shared, thread: usize) {
 }
 
 fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts>>) -> Result<Found, (Stage, Missing)> {
-    let failed = |stage| move |reason| (stage, Missing::Failed(reason));
-    let stamp = job.stamp.ok_or_else(|| failed(Stage::Content)("the file is gone".into()))?;
-    let content = shared.library.content(&job.path, stamp).map_err(failed(Stage::Content))?;
+    let unread = |reason| (Stage::Content, Missing::Unread(reason));
+    let stamp = job.stamp.ok_or_else(|| unread("the file is gone".into()))?;
+    let content = shared.library.content(&job.path, stamp).map_err(unread)?;
     let file = FileAt { path: &job.path, format: job.format, content };
-    let known = shared.library.facts(file).map_err(failed(Stage::Survey))?;
+    let known = shared.library.facts(file).map_err(|failure| (Stage::Survey, failure.into()))?;
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));
     shared.library.spectrum(file, &known, job.choice, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))

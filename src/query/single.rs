@@ -72,10 +72,10 @@ impl Singles {
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
         let content = library.content(path, stamp).map_err(|reason| failed(&reason))?;
         let file = FileAt { path, format, content };
-        let facts = library.facts(file).map_err(|reason| failed(&reason))?;
+        let facts = library.facts(file).map_err(|failure| failed(&failure.reason))?;
         let found = library.spectrum(file, &facts, choice, count, watch).map_err(|missing| match missing {
             Missing::Cancelled => SingleError::Cancelled,
-            Missing::Failed(reason) => failed(&reason),
+            Missing::Failed(reason) | Missing::Unread(reason) => failed(&reason),
         })?;
         Ok(Single {
             geometry: facts.geometry,

@@ -58,6 +58,8 @@ pub struct Worker {
 const PATIENCE: Duration = Duration::from_millis(100);
 /// After a change of parameters the first answer waits so long for the new values, so that the screen changes once.
 const GRACE: Duration = Duration::from_millis(12);
+/// The study of models that are not all there yet begins so long after a change: a store that has them all is quicker.
+const FIRST_STUDY: Duration = Duration::from_millis(120);
 /// So often is a file that could not be read looked at again by itself, and after so long.
 const LOOKS: u8 = 5;
 const LOOK: Duration = Duration::from_millis(400);
@@ -142,7 +144,7 @@ impl<'a> Desk<'a> {
             notify,
             study: None,
             studied: None,
-            next_study: now,
+            next_study: now + FIRST_STUDY,
             studies: 0,
             publish_at: Some(now),
             saved: false,
@@ -234,7 +236,7 @@ impl<'a> Desk<'a> {
     fn restudy(&mut self) {
         self.study = None;
         self.studied = None;
-        self.next_study = Instant::now();
+        self.next_study = Instant::now() + FIRST_STUDY;
     }
 
     fn begin_study(&mut self) {
