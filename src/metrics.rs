@@ -17,7 +17,7 @@
 pub(crate) use self::{
     columns::Columns,
     distance::{Chi2, L1, L2, Term, by_distance},
-    nearest::Nearest,
+    nearest::{Nearest, before},
 };
 pub use self::{
     distance::Distance,

@@ -21,6 +21,7 @@ use crate::{
 mod block;
 mod ground;
 mod judge;
+mod line;
 mod race;
 
 /// What hill climbing minimises.

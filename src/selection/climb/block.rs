@@ -52,16 +52,17 @@ impl Block {
         Self { values, relatives: Vec::new(), sums: Vec::new(), before: Vec::new(), strangers }
     }
 
-    /// Adds the loss of one model asked under each of the candidates.
+    /// The losses of one model asked under each of the candidates, when at most `depth` strangers are looked at. True
+    /// when that was enough to know them; otherwise they are at least so much.
     #[inline(always)]
-    pub(super) fn add_losses<T: Term, S: Simd>(
+    pub(super) fn losses<T: Term, S: Simd>(
         &mut self,
         simd: S,
         asked: usize,
         row: &Row,
         judge: &Judge<'_>,
-        losses: &mut [u128; LANES],
-    ) {
+        depth: usize,
+    ) -> ([u128; LANES], bool) {
         self.relatives.clear();
         self.sums.clear();
         for &model in judge.class(asked) {
@@ -73,27 +74,29 @@ impl Block {
             }
         }
         match judge.cost() {
-            Cost::Error => self.add_errors::<T, S>(simd, asked, row, losses),
-            Cost::Adr if self.relatives.is_empty() => {}
+            Cost::Error => self.errors::<T, S>(simd, asked, row, depth),
+            Cost::Adr if self.relatives.is_empty() => ([0; LANES], true),
             Cost::Adr => {
                 let (weights, scale) = judge.weights(asked);
-                for loss in losses.iter_mut() {
-                    *loss += scale;
-                }
+                let mut losses = [scale; LANES];
                 self.count_relatives(simd);
-                self.count_strangers::<T, S>(simd, asked, row);
+                let sure = self.count_strangers::<T, S>(simd, asked, row, depth);
                 for before in &self.before {
                     for (loss, &before) in losses.iter_mut().zip(before) {
                         *loss -= weights.get(before as usize).copied().unwrap_or(0);
                     }
                 }
+                (losses, sure)
             }
         }
     }
 
     /// A loss of 1 where a stranger comes before the nearest relative.
     #[inline(always)]
-    fn add_errors<T: Term, S: Simd>(&self, simd: S, asked: usize, row: &Row, losses: &mut [u128; LANES]) {
+    fn errors<T: Term, S: Simd>(&self, simd: S, asked: usize, row: &Row, depth: usize) -> ([u128; LANES], bool) {
+        if self.relatives.is_empty() {
+            return ([1; LANES], true);
+        }
         let (mut nearest, mut models) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
         let mut wrong = [0; LANES];
         let mut strangers = [0.0; LANES];
@@ -109,8 +112,10 @@ impl Block {
             }
         }
         let reach = greatest(&nearest);
-        for (at, &(sum, model)) in row.strangers.iter().enumerate() {
-            if at < HEAD && sum > reach {
+        let mut sure = depth >= row.strangers.len();
+        for (at, &(sum, model)) in row.strangers.iter().enumerate().take(depth) {
+            if (at < HEAD && sum > reach) || wrong == [1; LANES] {
+                sure = true;
                 break;
             }
             set_sums::<T, S>(simd, &mut strangers, &self.values, asked, (sum, model));
@@ -125,9 +130,7 @@ impl Block {
                 *wrong = simd.select_u64s(first, simd.splat_u64s(1), *wrong);
             }
         }
-        for (loss, wrong) in losses.iter_mut().zip(wrong) {
-            *loss += if self.relatives.is_empty() { 1 } else { u128::from(wrong) };
-        }
+        (wrong.map(u128::from), sure)
     }
 
     /// Counts, for each relative, the relatives before it.
@@ -139,9 +142,9 @@ impl Block {
             for (a, earlier) in self.sums[..later].iter().zip(&mut self.before) {
                 let counts = S::as_mut_simd_u64s(earlier).0.iter_mut().zip(S::as_mut_simd_u64s(&mut before).0);
                 for (((earlier, before), &a), &b) in counts.zip(vectors::<S>(a)).zip(vectors::<S>(b)) {
-                    let later_first = simd.less_than_f64s(b, a);
-                    *earlier = simd.select_u64s(later_first, simd.add_u64s(*earlier, simd.splat_u64s(1)), *earlier);
-                    *before = simd.select_u64s(later_first, *before, simd.add_u64s(*before, simd.splat_u64s(1)));
+                    // Of a pair at equal distance the lower model comes first.
+                    *earlier = count(simd, *earlier, simd.less_than_f64s(b, a));
+                    *before = count(simd, *before, simd.less_than_or_equal_f64s(a, b));
                 }
             }
             self.before.push(before);
@@ -149,45 +152,51 @@ impl Block {
     }
 
     /// Counts, for each relative, the strangers before it. Relatives that turn out not to be among the first Q of any
-    /// candidate are dropped.
+    /// candidate are dropped. False when more than `depth` strangers would have to be looked at.
     #[inline(always)]
-    fn count_strangers<T: Term, S: Simd>(&mut self, simd: S, asked: usize, row: &Row) {
+    fn count_strangers<T: Term, S: Simd>(&mut self, simd: S, asked: usize, row: &Row, depth: usize) -> bool {
+        let (Some(&lowest), Some(&highest)) = (self.relatives.first(), self.relatives.last()) else { return true };
         let first = self.relatives.len() as u64;
         for (nth, chunk) in row.strangers.chunks(CHUNK).enumerate() {
             let reach = self.drop_beyond(simd, first);
             if self.relatives.is_empty() || (nth * CHUNK < HEAD && chunk[0].0 > reach) {
-                break;
+                return true;
             }
+            if nth * CHUNK >= depth {
+                return false;
+            }
+            // Of a pair at equal distance the lower model comes first, as if it were a little nearer. Where classes lie
+            // side by side, a stranger is lower than all relatives or higher than all.
+            let apart = chunk.iter().all(|&(_, model)| model < lowest || model > highest);
             let [exact, nearer] = &mut self.strangers;
-            for ((&stranger, exact), nearer) in chunk.iter().zip(exact).zip(nearer) {
+            exact[chunk.len()..].fill([f64::INFINITY; LANES]);
+            for (&stranger, (exact, nearer)) in chunk.iter().zip(exact.iter_mut().zip(&mut *nearer)) {
                 set_sums::<T, S>(simd, exact, &self.values, asked, stranger);
-                for (&exact, nearer) in vectors::<S>(exact).iter().zip(vectors_mut::<S>(nearer)) {
-                    // Of a pair at equal distance the lower model comes first, as if it were a little nearer.
-                    let bits = simd.sub_u64s(simd.transmute_u64s_f64s(exact), simd.splat_u64s(1));
-                    let positive = simd.greater_than_f64s(exact, simd.splat_f64s(0.0));
-                    *nearer = simd.select_f64s(positive, simd.transmute_f64s_u64s(bits), simd.splat_f64s(-1.0));
+                if !apart {
+                    *nearer = *exact;
+                    bring_nearer(simd, nearer);
+                } else if stranger.1 < lowest {
+                    bring_nearer(simd, exact);
                 }
             }
-            for ((&relative, sums), before) in self.relatives.iter().zip(&self.sums).zip(&mut self.before) {
-                let counts = S::as_mut_simd_u64s(before).0.iter_mut();
-                for (at, (count, &sums)) in counts.zip(vectors::<S>(sums)).enumerate() {
-                    let mut sum = *count;
-                    for (distances, &(_, model)) in (0..).zip(chunk) {
-                        let distances = &self.strangers[usize::from(model < relative)][distances];
-                        let before = simd.less_than_f64s(vectors::<S>(distances)[at], sums);
-                        sum = simd.select_u64s(before, simd.add_u64s(sum, simd.splat_u64s(1)), sum);
-                    }
-                    *count = sum;
+            let relatives = self.relatives.iter().zip(&self.sums).zip(&mut self.before);
+            for ((&relative, sums), before) in relatives {
+                if apart {
+                    count_chunk(simd, before, sums, |at| &exact[at]);
+                } else {
+                    let lower = |at: usize| chunk.get(at).is_some_and(|&(_, model)| model < relative);
+                    count_chunk(simd, before, sums, |at| if lower(at) { &nearer[at] } else { &exact[at] });
                 }
             }
         }
+        true
     }
 
     /// Drops the relatives that have at least `first` models before them in every lane. Returns the greatest distance
     /// of any that have fewer.
     #[inline(always)]
     fn drop_beyond<S: Simd>(&mut self, simd: S, first: u64) -> f64 {
-        let mut reach = -1.0;
+        let mut reach = simd.splat_f64s(-1.0);
         let mut at = 0;
         while at < self.relatives.len() {
             let mut farthest = simd.splat_f64s(-1.0);
@@ -196,18 +205,43 @@ impl Block {
                 let within = simd.less_than_u64s(before, simd.splat_u64s(first));
                 farthest = simd.max_f64s(farthest, simd.select_f64s(within, sums, farthest));
             }
-            let farthest = simd.reduce_max_f64s(farthest);
-            if farthest >= 0.0 {
+            if simd.reduce_max_f64s(farthest) >= 0.0 {
+                reach = simd.max_f64s(reach, farthest);
                 at += 1;
-                reach = if farthest > reach { farthest } else { reach };
             } else {
                 self.relatives.swap_remove(at);
                 self.sums.swap_remove(at);
                 self.before.swap_remove(at);
             }
         }
-        reach
+        simd.reduce_max_f64s(reach)
     }
+}
+
+/// Counts the strangers of a chunk that come before a relative.
+#[inline(always)]
+fn count_chunk<'a, S: Simd>(simd: S, before: &mut Counts, sums: &Lanes, strangers: impl Fn(usize) -> &'a Lanes) {
+    for (at, (before, &sums)) in S::as_mut_simd_u64s(before).0.iter_mut().zip(vectors::<S>(sums)).enumerate() {
+        for stranger in 0..CHUNK {
+            *before = count(simd, *before, simd.less_than_f64s(vectors::<S>(strangers(stranger))[at], sums));
+        }
+    }
+}
+
+/// Makes distances a little less.
+#[inline(always)]
+fn bring_nearer<S: Simd>(simd: S, sums: &mut Lanes) {
+    for sums in vectors_mut::<S>(sums) {
+        let bits = simd.sub_u64s(simd.transmute_u64s_f64s(*sums), simd.splat_u64s(1));
+        let positive = simd.greater_than_f64s(*sums, simd.splat_f64s(0.0));
+        *sums = simd.select_f64s(positive, simd.transmute_f64s_u64s(bits), simd.splat_f64s(-1.0));
+    }
+}
+
+/// One more where the mask is set.
+#[inline(always)]
+fn count<S: Simd>(simd: S, counts: S::u64s, mask: S::m64s) -> S::u64s {
+    simd.add_u64s(counts, simd.select_u64s(mask, simd.splat_u64s(1), simd.splat_u64s(0)))
 }
 
 /// The distances to a model that is `sum` away without the candidates.

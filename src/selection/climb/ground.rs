@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::{
     block::{Block, LANES},
     judge::Judge,
+    line::Line,
     race::{Mark, Outcome},
 };
 use crate::{
@@ -17,6 +18,8 @@ use crate::{
 
 /// Strangers kept sorted for every model. A multiple of the chunks in which a [`Block`] counts them.
 pub(super) const HEAD: usize = 64;
+/// Strangers looked at in a brief evaluation.
+const BRIEF: usize = 24;
 /// Models asked between two looks at the watch and at the bound.
 const POLL: usize = 16;
 
@@ -108,16 +111,8 @@ impl<'a, T: Term> Ground<'a, T> {
 
     /// The loss with `index` alone.
     fn alone(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
-        let models = self.rows.len();
-        let col = self.columns.col(index as usize - 1);
-        let nearest = Nearest::new(models, self.columns.stride());
-        let outcomes = self.ask(
-            &[index],
-            bound,
-            watch,
-            Alone { ground: self, col, by_value: ByValue::new(&col[..models]), nearest },
-        );
-        Ok(outcomes?[0])
+        let line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()]);
+        Ok(self.ask(&[index], bound, watch, Alone { ground: self, line })?[0])
     }
 
     /// The loss with `index` removed.
@@ -148,8 +143,9 @@ impl<'a, T: Term> Ground<'a, T> {
 
 /// A move that is tried, or several of a kind, one in each lane.
 trait Move {
-    /// Adds the losses of one model asked.
-    fn add_losses<S: Simd>(&mut self, simd: S, model: usize, losses: &mut [u128; LANES]);
+    /// The losses of one model asked, and whether they are known. If `briefly`, they may be less than they are in the
+    /// end.
+    fn losses<S: Simd>(&mut self, simd: S, model: usize, briefly: bool) -> ([u128; LANES], bool);
 }
 
 /// Adding a block of candidates to what is selected.
@@ -160,27 +156,23 @@ struct With<'a, T> {
 
 impl<T: Term> Move for With<'_, T> {
     #[inline(always)]
-    fn add_losses<S: Simd>(&mut self, simd: S, model: usize, losses: &mut [u128; LANES]) {
-        self.block.add_losses::<T, S>(simd, model, &self.ground.rows[model], self.ground.judge, losses);
+    fn losses<S: Simd>(&mut self, simd: S, model: usize, briefly: bool) -> ([u128; LANES], bool) {
+        let depth = if briefly { BRIEF } else { usize::MAX };
+        self.block.losses::<T, S>(simd, model, &self.ground.rows[model], self.ground.judge, depth)
     }
 }
 
 /// Selecting one feature alone.
 struct Alone<'a, T> {
     ground: &'a Ground<'a, T>,
-    col: &'a [f64],
-    by_value: ByValue,
-    nearest: Nearest,
+    line: Line<'a>,
 }
 
 impl<T: Term> Move for Alone<'_, T> {
     #[inline(always)]
-    fn add_losses<S: Simd>(&mut self, _: S, model: usize, losses: &mut [u128; LANES]) {
-        let Self { ground, col, by_value, nearest } = self;
-        nearest.begin(Some(model));
-        nearest.seed(ground.judge.looks_at(model), by_value.around(model));
-        add_column::<T>(&mut nearest.sums, col, col[model]);
-        losses[0] += ground.judge.loss(model, nearest.update());
+    fn losses<S: Simd>(&mut self, _: S, model: usize, _: bool) -> ([u128; LANES], bool) {
+        let judge = self.ground.judge;
+        (in_first_lane(judge.loss(model, self.line.nearest::<T>(model, judge.looks_at(model)))), true)
     }
 }
 
@@ -193,7 +185,7 @@ struct Without<'a, T> {
 
 impl<T: Term> Move for Without<'_, T> {
     #[inline(always)]
-    fn add_losses<S: Simd>(&mut self, _: S, model: usize, losses: &mut [u128; LANES]) {
+    fn losses<S: Simd>(&mut self, _: S, model: usize, _: bool) -> ([u128; LANES], bool) {
         let Self { ground, rest, nearest } = self;
         nearest.begin(Some(model));
         for &index in rest.iter() {
@@ -201,12 +193,21 @@ impl<T: Term> Move for Without<'_, T> {
         }
         let strangers = ground.rows[model].strangers.iter();
         nearest.seed(ground.judge.looks_at(model), strangers.map(|&(_, other)| other));
-        losses[0] += ground.judge.loss(model, nearest.update());
+        (in_first_lane(ground.judge.loss(model, nearest.update())), true)
     }
+}
+
+fn in_first_lane(loss: u128) -> [u128; LANES] {
+    let mut losses = [0; LANES];
+    losses[0] = loss;
+    losses
 }
 
 /// Adds up the losses of all models asked for each of the candidates `indices`, until none of them can stay below the
 /// bound.
+///
+/// First all models are asked briefly, which is enough to give up on most candidates; then those whose losses are not
+/// known yet are asked again.
 struct Ask<'a, T, M> {
     ground: &'a Ground<'a, T>,
     indices: &'a [u32],
@@ -222,25 +223,57 @@ impl<T, M: Move> pulp::WithSimd for Ask<'_, T, M> {
     fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
         let Ground { rows, asked, .. } = self.ground;
         let (mut losses, mut before) = ([0; LANES], 0);
+        let mut unsure = Vec::new();
         for models in asked.chunks(POLL) {
-            if self.watch.cancelled() {
-                return Err(Cancelled);
-            }
             for &model in models {
-                self.of.add_losses(simd, model as usize, &mut losses);
+                let (least, sure) = self.of.losses(simd, model as usize, true);
+                add_lanes(&mut losses, &least);
                 before += rows[model as usize].loss;
+                if !sure {
+                    unsure.push((model, least));
+                }
             }
-            let bound = (self.bound)();
-            let mut marks = self.indices.iter().zip(losses).map(|(&index, loss)| (loss, index));
-            if marks.all(|mark| mark >= bound) {
+            if self.may_stop(&losses)? {
                 // Those not asked are taken to change as those asked did.
                 let whole = rows.iter().map(|row| row.loss).sum::<u128>();
                 let share = before.max(1) as f64 / whole.max(1) as f64;
-                let form = |loss: u128| Outcome::GivenUp(loss as f64 / share);
-                return Ok(losses.into_iter().take(self.indices.len()).map(form).collect());
+                return Ok(self.outcomes(&losses, |loss| Outcome::GivenUp(loss as f64 / share)));
             }
         }
-        Ok(losses.into_iter().take(self.indices.len()).map(Outcome::Whole).collect())
+        for models in unsure.chunks(POLL) {
+            for &(model, least) in models {
+                let (exact, _) = self.of.losses(simd, model as usize, false);
+                for ((loss, least), exact) in losses.iter_mut().zip(least).zip(exact) {
+                    *loss += exact - least;
+                }
+            }
+            if self.may_stop(&losses)? {
+                return Ok(self.outcomes(&losses, |loss| Outcome::GivenUp(loss as f64)));
+            }
+        }
+        Ok(self.outcomes(&losses, Outcome::Whole))
+    }
+}
+
+impl<T, M> Ask<'_, T, M> {
+    /// Whether no candidate can stay below the bound.
+    fn may_stop(&self, losses: &[u128; LANES]) -> Result<bool, Cancelled> {
+        if self.watch.cancelled() {
+            return Err(Cancelled);
+        }
+        let bound = (self.bound)();
+        Ok(self.indices.iter().zip(losses).all(|(&index, &loss)| (loss, index) >= bound))
+    }
+
+    fn outcomes(&self, losses: &[u128; LANES], outcome: impl Fn(u128) -> Outcome) -> Vec<Outcome> {
+        self.indices.iter().zip(losses).map(|(_, &loss)| outcome(loss)).collect()
+    }
+}
+
+#[inline(always)]
+fn add_lanes(sums: &mut [u128; LANES], lanes: &[u128; LANES]) {
+    for (sum, lane) in sums.iter_mut().zip(lanes) {
+        *sum += lane;
     }
 }
 
@@ -304,42 +337,7 @@ impl Row {
 #[inline(always)]
 fn add<T: Term>(sums: &mut [f64], columns: &Columns, values: &[f64], index: u32) {
     let col = index as usize - 1;
-    add_column::<T>(sums, columns.col(col), values[col]);
-}
-
-#[inline(always)]
-fn add_column<T: Term>(sums: &mut [f64], col: &[f64], value: f64) {
-    for (sum, &other) in sums.iter_mut().zip(col) {
-        *sum += T::term(value, other);
-    }
-}
-
-/// Models ordered by the value of one feature.
-#[derive(Default)]
-struct ByValue {
-    order: Vec<u32>,
-    /// Where each model stands in `order`.
-    places: Vec<u32>,
-}
-
-impl ByValue {
-    fn new(col: &[f64]) -> Self {
-        let mut order: Vec<u32> = (0..col.len() as u32).collect();
-        order.sort_unstable_by(|&a, &b| col[a as usize].total_cmp(&col[b as usize]).then(a.cmp(&b)));
-        let mut places = vec![0; col.len()];
-        for (place, &model) in (0..).zip(&order) {
-            places[model as usize] = place;
-        }
-        Self { order, places }
-    }
-
-    /// The other models, by turns below and above in value.
-    fn around(&self, model: usize) -> impl Iterator<Item = u32> {
-        let place = self.places[model] as usize;
-        let reach = place.max(self.order.len() - 1 - place);
-        (1..=reach).flat_map(move |step| {
-            let below = place.checked_sub(step).map(|at| self.order[at]);
-            below.into_iter().chain(self.order.get(place + step).copied())
-        })
+    for (sum, &other) in sums.iter_mut().zip(columns.col(col)) {
+        *sum += T::term(values[col], other);
     }
 }
