@@ -10,6 +10,7 @@
 //! | floor | module | what lives there |
 //! |---|---|---|
 //! | 0 | [`watch`] | how a long computation tells its progress and learns that it was cancelled |
+//! | 0 | [`figure`] | figures for print: axes, curves, marks, maps; SVG and PNG |
 //! | 0 | [`mesh`] | the triangle mesh as a value: readers, checks, content hash, the procedural shape generator |
 //! | 1 | [`laplacian`] | mesh → stiffness matrix L and mass matrix B |
 //! | 2 | [`spectrum`] | (L, B) → certified eigenvalues; normalisations |
@@ -38,6 +39,7 @@
 
 pub mod cli;
 pub mod dataset;
+pub mod figure;
 pub mod laplacian;
 pub mod mesh;
 pub mod metrics;

@@ -1,0 +1,112 @@
+//! The few elements of SVG that a figure needs.
+
+use std::fmt::{self, Write as _};
+
+/// An SVG document under construction. Lengths are pixels of 1/96 inch.
+#[derive(Debug)]
+pub(super) struct Svg {
+    text: String,
+}
+
+/// Where a text is held.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// The size of ordinary text.
+pub(super) const TEXT: f64 = 11.0;
+
+/// How wide a text is, by the mean width of the letters of its font.
+pub(super) fn width(text: &str) -> f64 {
+    text.chars().count() as f64 * 0.6 * TEXT
+}
+
+impl Svg {
+    pub(super) fn new(width: f64, height: f64) -> Self {
+        let mut this = Self { text: String::new() };
+        this.write(format_args!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"DejaVu Sans, Verdana, sans-serif\" \
+             font-size=\"{TEXT}\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
+        ));
+        this.write(format_args!("<rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n"));
+        this
+    }
+
+    fn write(&mut self, arguments: fmt::Arguments<'_>) {
+        // A String takes everything.
+        let _ = self.text.write_fmt(arguments);
+    }
+
+    pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: &str) {
+        let ([x1, y1], [x2, y2]) = (from, to);
+        self.write(format_args!("<path d=\"M{x1:.2} {y1:.2}L{x2:.2} {y2:.2}\" {stroke}/>\n"));
+    }
+
+    /// Lines through points, lifted where there is none.
+    pub(super) fn polyline(&mut self, points: impl Iterator<Item = Option<[f64; 2]>>, stroke: &str) {
+        let mut path = String::new();
+        let mut pen = 'M';
+        for point in points {
+            match point {
+                Some([x, y]) => {
+                    let _ = write!(path, "{pen}{x:.2} {y:.2}");
+                    pen = 'L';
+                }
+                None => pen = 'M',
+            }
+        }
+        if !path.is_empty() {
+            self.write(format_args!("<path d=\"{path}\" {stroke}/>\n"));
+        }
+    }
+
+    pub(super) fn path(&mut self, data: &str, stroke: &str) {
+        self.write(format_args!("<path d=\"{data}\" {stroke}/>\n"));
+    }
+
+    pub(super) fn rect(&mut self, [x, y]: [f64; 2], width: f64, height: f64, look: &str) {
+        self.write(format_args!(
+            "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" {look}/>\n"
+        ));
+    }
+
+    /// `turn` in degrees, anticlockwise.
+    pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, turn: f64, look: &str, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let turned =
+            if turn == 0.0 { String::new() } else { format!(" transform=\"rotate({:.0} {x:.2} {y:.2})\"", -turn) };
+        let text = escape(text);
+        self.write(format_args!(
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" fill=\"#000000\"{turned} {look}>{text}</text>\n"
+        ));
+    }
+
+    pub(super) fn finish(mut self) -> String {
+        self.text.push_str("</svg>\n");
+        self.text
+    }
+}
+
+/// Text as XML takes it: without the characters that it has no way to write.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => escaped.push('\u{fffd}'),
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}
