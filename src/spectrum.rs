@@ -12,12 +12,18 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-pub use self::{band::Band, normalise::Normalisation};
+pub use self::{
+    band::Band,
+    normalise::Normalisation,
+    timings::{Cost, Timings},
+};
 use crate::{
     laplacian::{Laplacian, LaplacianError, Mass, Operator, assemble},
     mesh::Mesh,
     watch::Watch,
 };
+
+use self::timings::Meter;
 
 mod band;
 mod block;
@@ -37,6 +43,7 @@ mod solve;
 #[cfg(test)]
 mod tests;
 mod thorough;
+mod timings;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
 pub const KERNEL: u32 = 1;
@@ -101,10 +108,13 @@ pub struct Spectrum {
     pub order: usize,
     /// 1ᵀB1: the area for finite elements, `order` for the cotangent operator.
     pub measure: f64,
-    /// How many eigenvalues are zero: the number of connected components.
+    /// How many eigenvalues are zero: the number of connected components that no boundary condition holds.
     pub zeros: usize,
     /// What was done to the mesh, one line each.
     pub notes: Vec<String>,
+    /// What this solve took, by part; nothing for a spectrum that was read from a store.
+    #[serde(skip)]
+    pub timings: Timings,
 }
 
 /// An inertia count: so many eigenvalues of one piece lie below a shift.
@@ -188,8 +198,12 @@ pub fn solve(
     known: &[Band],
     watch: &dyn Watch,
 ) -> Result<Spectrum, SpectrumError> {
+    let mut meter = Meter::start();
     let laplacian = assemble(mesh, choice.operator, choice.mass)?;
-    solve_laplacian(&laplacian, count, known, watch)
+    meter.charge(Cost::Assembly);
+    let mut spectrum = solve_laplacian(&laplacian, count, known, watch)?;
+    spectrum.timings.add(&meter.timings);
+    Ok(spectrum)
 }
 
 /// [`solve()`] for matrices that are assembled already.

@@ -1,20 +1,25 @@
 //! All eigenvalues of a small connected piece.
 
-use super::{slice::Found, small::eigen};
+use super::{pencil::has_kernel, slice::Found, small::eigen};
 use crate::laplacian::Symmetric;
 
 /// Up to this many rows a piece is solved densely.
 pub(super) const LARGEST: usize = 160;
 
-/// All eigenvalues of a connected piece, ascending, the first one exactly zero. `None` when a decomposition fails.
+/// All eigenvalues of a connected piece, ascending, the first one exactly zero if it has a kernel. `None` when a
+/// decomposition fails.
 ///
 /// Two dense problems are solved, because neither is accurate everywhere: the inverse one, `B x = θ (L + τB) x` with
 /// λ = 1/θ − τ, has an error that grows with λ, the direct one `L x = λ B x` has one that shrinks, both in proportion
 /// to λ. Each eigenvalue is taken from the problem with the smaller bound.
 pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
     let n = matrix.order();
+    let kernel = has_kernel(matrix);
     if n == 1 {
-        return Some(vec![Found { value: 0.0, near: 0.0, error: 0.0 }]);
+        let (_, _, stiffness, mass) = matrix.entries().next()?;
+        let value = if kernel { 0.0 } else { stiffness / mass };
+        let error = 2.0 * f64::EPSILON * value;
+        return value.is_finite().then(|| vec![Found { value, near: error, error }]);
     }
     let (mut l, mut b) = (vec![0.0; n * n], vec![0.0; n * n]);
     for (row, column, stiffness, mass) in matrix.entries() {
@@ -43,10 +48,15 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
         })
         .collect();
     found.sort_by(|a, b| a.value.total_cmp(&b.value));
-    if found[0].value.abs() > 1e-7 * tau || found[1].value <= 0.0 {
+    if kernel {
+        if found[0].value.abs() > 1e-7 * tau {
+            return None;
+        }
+        found[0] = Found { value: 0.0, near: 0.0, error: 0.0 };
+    }
+    if found[usize::from(kernel)].value <= 0.0 {
         return None;
     }
-    found[0] = Found { value: 0.0, near: 0.0, error: 0.0 };
     Some(found)
 }
 

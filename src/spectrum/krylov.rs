@@ -11,6 +11,7 @@ use super::{
     pencil::Pencil,
     poll::{Poll, Stop},
     small::{eigen, identity},
+    timings::Cost,
 };
 
 /// Inverse iterations on the start block. They take out of it what lies far from the shift at the price of a solve
@@ -100,6 +101,7 @@ impl<'a> Krylov<'a> {
         let blocks = self.blocks();
         self.apply(poll)?;
         self.recur();
+        poll.charge(Cost::Orthogonalisation);
         self.orthogonalise(blocks, poll)?;
         let beta = self.normalise(blocks, poll)?;
         self.beta.push(beta);
@@ -110,6 +112,7 @@ impl<'a> Krylov<'a> {
     /// `work = A⁻¹ newest`.
     fn apply(&mut self, poll: &mut Poll) -> Result<(), Stop> {
         self.scratch.work.flat().copy_from_slice(self.scratch.newest.flat());
+        poll.charge(Cost::Rest);
         self.factor.solve(&self.pencil.symbolic, self.scratch.work.rows_mut(), poll)
     }
 
@@ -140,10 +143,12 @@ impl<'a> Krylov<'a> {
             return Ok(());
         }
         dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+        poll.charge(Cost::Products);
         let mut sums = vec![Square::default(); all.len()];
         dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
         poll.spend(work.rows().len() * all.len() * WIDTH)?;
         dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
+        poll.charge(Cost::Orthogonalisation);
         poll.spend(work.rows().len() * all.len() * WIDTH)?;
         Ok(())
     }
@@ -158,10 +163,12 @@ impl<'a> Krylov<'a> {
         for _ in 0..6 {
             let Scratch { work, mass, newest, .. } = &mut *self.scratch;
             let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+            poll.charge(Cost::Products);
             let (upper, inverse, worst, lost) = cholesky(&gram);
             dispatch(Combine { x: work.rows(), factor: &inverse, to: newest.rows_mut() });
             std::mem::swap(work, newest);
             dispatch(Combine { x: mass.rows(), factor: &inverse, to: newest.rows_mut() });
+            poll.charge(Cost::Blocks);
             poll.spend(4 * WIDTH * work.rows().len())?;
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);
@@ -198,7 +205,7 @@ impl<'a> Krylov<'a> {
     }
 
     /// The Ritz values of the basis without its last block, by distance from the shift.
-    pub(super) fn ritz(&mut self) -> Option<Vec<Ritz>> {
+    pub(super) fn ritz(&mut self, poll: &mut Poll) -> Option<Vec<Ritz>> {
         let blocks = self.alpha.len();
         let n = blocks * WIDTH;
         let Scratch { small, tails, .. } = &mut *self.scratch;
@@ -208,7 +215,9 @@ impl<'a> Krylov<'a> {
         for at in 0..WIDTH {
             tails[n - WIDTH + at][at] = 1.0;
         }
+        poll.charge(Cost::Rest);
         let theta = eigen(small, n, tails)?;
+        poll.charge(Cost::Dense);
         let last = &self.beta[blocks - 1];
         let mut found: Vec<Ritz> = theta
             .iter()
@@ -369,7 +378,7 @@ mod tests {
                 }
             }
         }
-        let ritz = krylov.ritz().unwrap();
+        let ritz = krylov.ritz(&mut poll).unwrap();
         let vectors = krylov.vectors(&ritz[..40]).unwrap();
         for (at, ritz) in ritz[..40].iter().enumerate() {
             let x: Vec<f64> = vectors[at / WIDTH].rows().iter().map(|row| row[at % WIDTH]).collect();

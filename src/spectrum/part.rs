@@ -67,6 +67,11 @@ impl Part {
         self.bands.last().map_or(0.0, |band| band.upper)
     }
 
+    /// Whether its smallest eigenvalue is zero.
+    pub(super) fn has_kernel(&self) -> bool {
+        self.pencil.kernel
+    }
+
     pub(super) fn finished(&self) -> bool {
         self.counted() == self.pencil.order()
     }
@@ -184,6 +189,7 @@ impl Part {
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch } = tools;
+        poll.meter.timings.processes += 1;
         let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, &[], scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut settled = false;
@@ -196,7 +202,7 @@ impl Part {
             if blocks != most && (blocks < FIRST_LOOK || !(blocks - FIRST_LOOK).is_multiple_of(LOOK)) {
                 continue;
             }
-            let Some(ritz) = krylov.ritz() else { break };
+            let Some(ritz) = krylov.ritz(poll) else { break };
             let sides = Sides::new(&ritz, sigma, ahead.width / TARGET, 1e-4 * sigma);
             if !settled {
                 match judge(&sides) {
@@ -222,16 +228,17 @@ impl Part {
     fn finish(&mut self, lower: f64, upper: f64, above: usize, mut found: Vec<Found>) -> Result<(), Advance> {
         let first = self.bands.is_empty();
         let failed = Advance::Uncertified { at: upper * self.unit };
-        if first {
-            // A connected piece has one zero; it is the smallest, and every other eigenvalue is above it.
+        let zeros = usize::from(first && self.pencil.kernel);
+        if zeros == 1 {
+            // It is the smallest eigenvalue, and every other one is above it.
             let Some(zero) = found.first_mut() else { return Err(failed) };
             if zero.value.abs() > 1e-7 * upper {
                 return Err(failed);
             }
             *zero = Found { value: 0.0, near: 0.0, error: 0.0 };
-            if found.get(1).is_some_and(|next| next.value <= 0.0) {
-                return Err(failed);
-            }
+        }
+        if found.get(zeros).is_some_and(|next| next.value <= 0.0) {
+            return Err(failed);
         }
         self.bands.push(Band {
             part: self.number,
@@ -240,7 +247,7 @@ impl Part {
             upper: if above == self.pencil.order() { f64::MAX } else { upper * self.unit },
             below: self.counted(),
             above,
-            zeros: usize::from(first),
+            zeros,
             values: found.iter().map(|found| found.value * self.unit).collect(),
             errors: found.iter().map(|found| found.error * self.unit).collect(),
         });

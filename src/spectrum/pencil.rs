@@ -9,6 +9,8 @@ pub(super) struct Pencil {
     pub matrix: Symmetric,
     pub symbolic: Symbolic,
     pub mass: Product,
+    /// Whether the constants are in the kernel of L.
+    pub kernel: bool,
 }
 
 /// B by rows, for products with blocks.
@@ -32,13 +34,29 @@ impl Pencil {
             MassMatrix::Diagonal(values) => Product::Diagonal(values.clone()),
             MassMatrix::Full(values) => by_rows(&matrix, values),
         };
-        Some(Self { matrix, symbolic, mass })
+        let kernel = has_kernel(&matrix);
+        Some(Self { matrix, symbolic, mass, kernel })
     }
 
     /// Number of rows.
     pub(super) fn order(&self) -> usize {
         self.matrix.order()
     }
+}
+
+/// Whether the rows of L sum to zero, but for rounding. The L of a connected piece of a surface has the constants as
+/// its kernel, or none where a boundary condition holds the piece: then rows beside the held vertices miss an entry.
+pub(super) fn has_kernel(matrix: &Symmetric) -> bool {
+    let mut sums = vec![0.0; matrix.order()];
+    for (row, column, l, _) in matrix.entries() {
+        sums[row] += l;
+        if row != column {
+            sums[column] += l;
+        }
+    }
+    // What was added up to the diagonal entry, and cancels here, is of its size.
+    let small = |(row, sum): (usize, &f64)| sum.abs() <= 1e-12 * matrix.stiffness[matrix.range(row).start].abs();
+    sums.iter().enumerate().all(small)
 }
 
 fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {

@@ -1,5 +1,6 @@
 //! Looking at the watch often enough, but not more.
 
+use super::timings::{Cost, Meter};
 use crate::watch::Watch;
 
 /// Why a kernel came back without a result.
@@ -15,6 +16,7 @@ pub(super) enum Stop {
 pub(super) struct Poll<'a> {
     watch: &'a dyn Watch,
     spent: usize,
+    pub meter: Meter,
 }
 
 impl std::fmt::Debug for Poll<'_> {
@@ -27,7 +29,12 @@ impl<'a> Poll<'a> {
     const BUDGET: usize = 1 << 23;
 
     pub(super) fn new(watch: &'a dyn Watch) -> Self {
-        Self { watch, spent: 0 }
+        Self { watch, spent: 0, meter: Meter::start() }
+    }
+
+    /// Charges the time since the last charge to a part of the work.
+    pub(super) fn charge(&mut self, cost: Cost) {
+        self.meter.charge(cost);
     }
 
     /// Notes work that was done or is about to be done, in multiplications.

@@ -8,6 +8,7 @@ use super::{
     pencil::Pencil,
     poll::Poll,
     slice::Found,
+    timings::Cost,
 };
 use crate::{laplacian::Laplacian, watch::Watch};
 
@@ -24,6 +25,7 @@ pub(super) fn solve(
     let mut state = State { small: None, parts: Vec::with_capacity(large.len()), order };
     if !small.is_empty() {
         state.small = Some(small_pieces(laplacian, &small, known, watch)?);
+        poll.charge(Cost::Dense);
     }
     for rows in &large {
         let number = state.parts.len() as u32 + 1;
@@ -33,6 +35,7 @@ pub(super) fn solve(
         let matrix = if large.len() == 1 && small.is_empty() { None } else { Some(laplacian.matrix.select(rows)) };
         let pencil = Pencil::new(matrix.as_ref().unwrap_or(&laplacian.matrix))
             .ok_or_else(|| SpectrumError::Refused("not enough memory to order the vertices".to_owned()))?;
+        poll.charge(Cost::Ordering);
         state.parts.push(Part::new(number, pencil, laplacian.unit(), known));
     }
     let mut tools = Tools::default();
@@ -54,19 +57,26 @@ pub(super) fn solve(
             }
         }
     }
+    let zeros =
+        state.small.as_ref().map_or(0, |band| band.zeros) + state.parts.iter().filter(|part| part.has_kernel()).count();
     Ok(Spectrum {
         bands: state.bands(),
         parts: state.parts.len() as u32 + 1,
         order,
         measure: laplacian.measure(),
-        zeros: laplacian.components,
+        zeros,
         notes: laplacian.notes.clone(),
+        timings: {
+            poll.charge(Cost::Rest);
+            poll.meter.timings
+        },
     })
 }
 
 /// The rows of the connected components: those for the dense solver, and those for the sparse one.
 fn pieces(laplacian: &Laplacian) -> (Vec<Vec<u32>>, Vec<Vec<u32>>) {
-    let mut rows: Vec<Vec<u32>> = vec![Vec::new(); laplacian.components];
+    let mut rows: Vec<Vec<u32>> =
+        vec![Vec::new(); laplacian.component.iter().max().map_or(0, |last| *last as usize + 1)];
     for (row, &component) in laplacian.component.iter().enumerate() {
         rows[component as usize].push(row as u32);
     }
@@ -107,7 +117,7 @@ fn small_pieces(
         upper: f64::MAX,
         below: 0,
         above: rows,
-        zeros: small.len(),
+        zeros: all.iter().take_while(|found| found.value == 0.0).count(),
         values: all.iter().map(|found| found.value * unit).collect(),
         errors: all.iter().map(|found| found.error * unit).collect(),
     })

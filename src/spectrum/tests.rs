@@ -258,3 +258,31 @@ fn bad_meshes_are_refused_by_name() {
     assert!(refused(vec![[1.0; 3]; 3], vec![[0, 1, 2]]).contains("extends"));
     assert!(refused(points.iter().map(|p| p.map(|x| 1e300 * x)).collect(), vec![[0, 1, 2]]).contains("extends"));
 }
+
+#[test]
+fn a_piece_that_is_held_has_no_zero() {
+    // Vertices of the rectangle's boundary removed: zero on the boundary (Dirichlet). λ = π² (i²/4 + j²), i, j ≥ 1.
+    let square = std::f64::consts::PI.powi(2);
+    let mut expected: Vec<f64> =
+        (1..40).flat_map(|i| (1..40).map(move |j| square * (f64::from(i * i) / 4.0 + f64::from(j * j)))).collect();
+    expected.sort_by(f64::total_cmp);
+    let held = |b: usize| {
+        let mut laplacian = assemble(&shapes::grid(2 * b, b), Operator::Fem, Mass::Consistent).unwrap();
+        let inside = |row: &u32| {
+            let (x, y) = (*row as usize % (2 * b + 1), *row as usize / (2 * b + 1));
+            x > 0 && x < 2 * b && y > 0 && y < b
+        };
+        let rows: Vec<u32> = (0..laplacian.matrix.order() as u32).filter(inside).collect();
+        laplacian.matrix = laplacian.matrix.select(&rows);
+        laplacian.vertices = rows;
+        laplacian.component.truncate(laplacian.matrix.order());
+        laplacian
+    };
+    // The coarsest ones go to the dense solver.
+    for (b, tolerance) in [(8, 0.3), (32, 0.02), (64, 0.005)] {
+        let spectrum = solve_laplacian(&held(b), 20, &[], &Unwatched).unwrap();
+        assert_eq!(spectrum.zeros, 0);
+        assert!(worst(&spectrum.eigenvalues()[..20], &expected[..20]) < tolerance);
+        assert!(spectrum.bands.iter().all(|band| band.zeros == 0));
+    }
+}

@@ -55,7 +55,7 @@ pub(super) fn thorough(
         for _ in 0..blocks {
             krylov.step(poll)?;
         }
-        let Some(ritz) = krylov.ritz() else { continue };
+        let Some(ritz) = krylov.ritz(poll) else { continue };
         let sides = Sides::new(&ritz, pole, width / total as f64, 1e-4 * slice.end);
         let new: Vec<Found> = sides
             .left

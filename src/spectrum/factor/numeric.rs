@@ -6,6 +6,7 @@ use crate::{
     spectrum::{
         lanes::{Buffer, WIDTH, dispatch},
         poll::{Poll, Stop},
+        timings::Cost,
     },
 };
 
@@ -83,6 +84,7 @@ impl Factor {
                 self.stack.extend_from_slice(&front[column * size + column..column * size + used]);
             }
         }
+        poll.charge(Cost::Factorisation);
         Ok(negative)
     }
 

@@ -8,6 +8,7 @@ use super::{Factor, Symbolic};
 use crate::spectrum::{
     lanes::{Kernel, Lanes, Row, WIDTH, dispatch},
     poll::{Poll, Stop},
+    timings::Cost,
 };
 
 /// Numbers of the factor that are read between two looks at the watch.
@@ -36,6 +37,7 @@ impl Factor {
             poll.spend(WIDTH * (symbolic.value_start[end] - symbolic.value_start[start]))?;
             end = start;
         }
+        poll.charge(Cost::Solves);
         Ok(())
     }
 }
