@@ -3,266 +3,243 @@
 //! What a candidate costs a model asked follows from how many strangers (models of other classes) come before each of
 //! its relatives (models of its class). Strangers are looked at by their distance without the candidate, which no
 //! candidate makes smaller: once that is beyond the farthest relative that still matters, no more need be.
+//!
+//! Lanes know distances but not models, so that pairs at equal distance are settled for the whole block: in favour of
+//! the relatives, which gives the [`LEAST`] loss, or in favour of the strangers, which gives the [`MOST`]. Where both
+//! are the same, that is the loss.
 
 use pulp::Simd;
 
-use super::{
-    Cost,
-    ground::{HEAD, Row},
-    judge::Judge,
-};
+use super::{Cost, ground::Row, judge::Judge};
 use crate::metrics::{Columns, Term};
 
-/// Candidates in a block.
+/// Of a stranger and a relative at equal distance, the relative comes first.
+pub(super) const LEAST: bool = true;
+/// Of a stranger and a relative at equal distance, the stranger comes first.
+pub(super) const MOST: bool = false;
+
+/// The lanes of the widest vector.
 pub(super) const LANES: usize = 8;
 /// Strangers counted in one go.
 const CHUNK: usize = 8;
 
-/// A number for each candidate of a block.
-type Lanes = [f64; LANES];
+/// A loss for each lane, in [`Judge::unit`]s.
+pub(super) type Losses = [u64; LANES];
 
-/// A count for each candidate of a block.
-type Counts = [u64; LANES];
-
-/// The features of a few candidates, side by side.
-pub(super) struct Block {
+/// The features of as many candidates as a vector has lanes, side by side.
+pub(super) struct Block<S: Simd> {
     /// By model.
-    values: Vec<Lanes>,
-    /// The relatives of the model asked that may still be among the first Q, ascending by model.
-    relatives: Vec<u32>,
-    /// Their distances.
-    sums: Vec<Lanes>,
-    /// How many models come before each of them, as far as they have been counted.
-    before: Vec<Counts>,
-    /// Distances of a chunk of strangers: as they are, and a little nearer.
-    strangers: [[Lanes; CHUNK]; 2],
+    values: Vec<S::f64s>,
+    /// The distances of the relatives of the model asked; ascending in each lane once they are sorted.
+    relatives: Vec<S::f64s>,
+    /// How many strangers come before each of them, as far as they have been counted.
+    before: Vec<S::u64s>,
 }
 
-impl Block {
-    /// For the features `indices` (from 1), at most [`LANES`]. Lanes left over repeat the last one.
+impl<S: Simd> Block<S> {
+    /// For the features `indices` (from 1), at most as many as there are lanes. Lanes left over repeat the last one.
+    #[inline(always)]
     pub(super) fn new(columns: &Columns, indices: &[u32], models: usize) -> Self {
-        let mut values = vec![[0.0; LANES]; models];
-        for lane in 0..LANES {
-            let index = indices[lane.min(indices.len() - 1)];
-            for (values, &value) in values.iter_mut().zip(columns.col(index as usize - 1)) {
-                values[lane] = value;
+        let mut values = vec![0.0; S::F64_LANES * models];
+        for lane in 0..S::F64_LANES {
+            let column = columns.col(indices[lane.min(indices.len() - 1)] as usize - 1);
+            for (value, &of_model) in values[lane..].iter_mut().step_by(S::F64_LANES).zip(column) {
+                *value = of_model;
             }
         }
-        let strangers = [[[0.0; LANES]; CHUNK]; 2];
-        Self { values, relatives: Vec::new(), sums: Vec::new(), before: Vec::new(), strangers }
+        Self { values: S::as_simd_f64s(&values).0.to_vec(), relatives: Vec::new(), before: Vec::new() }
     }
 
     /// The losses of one model asked under each of the candidates, when at most `depth` strangers are looked at. True
     /// when that was enough to know them; otherwise they are at least so much.
     #[inline(always)]
-    pub(super) fn losses<T: Term, S: Simd>(
+    pub(super) fn losses<T: Term, const TIES: bool>(
         &mut self,
         simd: S,
         asked: usize,
         row: &Row,
         judge: &Judge<'_>,
         depth: usize,
-    ) -> ([u128; LANES], bool) {
+    ) -> (Losses, bool) {
         self.relatives.clear();
-        self.sums.clear();
         for &model in judge.class(asked) {
             if model as usize != asked {
-                let mut sums = [0.0; LANES];
-                set_sums::<T, S>(simd, &mut sums, &self.values, asked, (row.sums[model as usize], model));
-                self.relatives.push(model);
-                self.sums.push(sums);
+                self.relatives.push(self.sums::<T>(simd, asked, (row.sums[model as usize], model)));
             }
         }
         match judge.cost() {
-            Cost::Error => self.errors::<T, S>(simd, asked, row, depth),
-            Cost::Adr if self.relatives.is_empty() => ([0; LANES], true),
-            Cost::Adr => {
-                let (weights, scale) = judge.weights(asked);
-                let mut losses = [scale; LANES];
-                self.count_relatives(simd);
-                let sure = self.count_strangers::<T, S>(simd, asked, row, depth);
-                for before in &self.before {
-                    for (loss, &before) in losses.iter_mut().zip(before) {
-                        *loss -= weights.get(before as usize).copied().unwrap_or(0);
-                    }
-                }
-                (losses, sure)
-            }
+            Cost::Error => self.errors::<T, TIES>(simd, asked, row, depth),
+            Cost::Adr => self.recall::<T, TIES>(simd, asked, row, judge, depth),
         }
+    }
+
+    /// The distances to a model that is `sum` away without the candidates.
+    #[inline(always)]
+    fn sums<T: Term>(&self, simd: S, asked: usize, (sum, model): (f64, u32)) -> S::f64s {
+        simd.add_f64s(simd.splat_f64s(sum), T::terms(simd, self.values[asked], self.values[model as usize]))
     }
 
     /// A loss of 1 where a stranger comes before the nearest relative.
     #[inline(always)]
-    fn errors<T: Term, S: Simd>(&self, simd: S, asked: usize, row: &Row, depth: usize) -> ([u128; LANES], bool) {
-        if self.relatives.is_empty() {
-            return ([1; LANES], true);
-        }
-        let (mut nearest, mut models) = ([f64::INFINITY; LANES], [f64::INFINITY; LANES]);
-        let mut wrong = [0; LANES];
-        let mut strangers = [0.0; LANES];
-        {
-            let (nearest, models) = (vectors_mut::<S>(&mut nearest), vectors_mut::<S>(&mut models));
-            for (&model, sums) in self.relatives.iter().zip(&self.sums) {
-                let model = simd.splat_f64s(f64::from(model));
-                for ((nearest, models), &sums) in nearest.iter_mut().zip(&mut *models).zip(vectors::<S>(sums)) {
-                    let nearer = simd.less_than_f64s(sums, *nearest);
-                    *nearest = simd.select_f64s(nearer, sums, *nearest);
-                    *models = simd.select_f64s(nearer, model, *models);
-                }
-            }
-        }
-        let reach = greatest(&nearest);
+    fn errors<T: Term, const TIES: bool>(&self, simd: S, asked: usize, row: &Row, depth: usize) -> (Losses, bool) {
+        let nearest = simd.splat_f64s(f64::INFINITY);
+        let nearest = self.relatives.iter().fold(nearest, |nearest, &sums| simd.min_f64s(nearest, sums));
+        let reach = simd.reduce_max_f64s(nearest);
+        // Without relatives or strangers nothing right is there to be found.
+        let mut right = simd.less_than_f64s(nearest, simd.splat_f64s(f64::INFINITY));
         let mut sure = depth >= row.strangers.len();
-        for (at, &(sum, model)) in row.strangers.iter().enumerate().take(depth) {
-            if (at < HEAD && sum > reach) || wrong == [1; LANES] {
+        for &stranger in row.strangers.iter().take(depth) {
+            if stranger.0 > reach || none::<S>(simd, right) {
                 sure = true;
                 break;
             }
-            set_sums::<T, S>(simd, &mut strangers, &self.values, asked, (sum, model));
-            let (nearest, models) = (vectors::<S>(&nearest), vectors::<S>(&models));
-            let model = simd.splat_f64s(f64::from(model));
-            let wrong = S::as_mut_simd_u64s(&mut wrong).0;
-            for (((wrong, &sums), &nearest), &models) in
-                wrong.iter_mut().zip(vectors::<S>(&strangers)).zip(nearest).zip(models)
-            {
-                let tie = simd.and_m64s(simd.equal_f64s(sums, nearest), simd.less_than_f64s(model, models));
-                let first = simd.or_m64s(simd.less_than_f64s(sums, nearest), tie);
-                *wrong = simd.select_u64s(first, simd.splat_u64s(1), *wrong);
-            }
+            let sums = self.sums::<T>(simd, asked, stranger);
+            let behind = if TIES == LEAST {
+                simd.less_than_or_equal_f64s(nearest, sums)
+            } else {
+                simd.less_than_f64s(nearest, sums)
+            };
+            right = simd.and_m64s(right, behind);
         }
-        (wrong.map(u128::from), sure)
+        let wrong = [simd.select_u64s(right, simd.splat_u64s(0), simd.splat_u64s(1))];
+        let mut losses = [0; LANES];
+        for (loss, &wrong) in losses.iter_mut().zip(lanes::<S>(&wrong)) {
+            *loss = wrong;
+        }
+        (losses, sure)
     }
 
-    /// Counts, for each relative, the relatives before it.
+    /// What the ADR lacks of 1.
     #[inline(always)]
-    fn count_relatives<S: Simd>(&mut self, simd: S) {
+    fn recall<T: Term, const TIES: bool>(
+        &mut self,
+        simd: S,
+        asked: usize,
+        row: &Row,
+        judge: &Judge<'_>,
+        depth: usize,
+    ) -> (Losses, bool) {
+        if self.relatives.is_empty() {
+            return ([0; LANES], true);
+        }
+        self.sort(simd, judge.network(asked));
+        let (live, sure) = self.count::<T, TIES>(simd, asked, row, depth);
+        let (weights, whole) = judge.credits(asked);
+        let mut losses = [whole; LANES];
+        for (nth, before) in self.before[..live].iter().enumerate() {
+            for (loss, &before) in losses.iter_mut().zip(lanes::<S>(std::slice::from_ref(before))) {
+                *loss -= weights.get(nth + before as usize).copied().unwrap_or(0);
+            }
+        }
+        (losses, sure)
+    }
+
+    /// Sorts the relatives of every lane by a sorting network.
+    #[inline(always)]
+    fn sort(&mut self, simd: S, network: &[(u32, u32)]) {
+        for &(a, b) in network {
+            let (low, high) = (self.relatives[a as usize], self.relatives[b as usize]);
+            self.relatives[a as usize] = simd.min_f64s(low, high);
+            self.relatives[b as usize] = simd.max_f64s(low, high);
+        }
+    }
+
+    /// Counts, for each relative, the strangers before it. Returns how many of the nearest relatives are among the
+    /// first Q of any lane, and false when more than `depth` strangers would have to be looked at.
+    #[inline(always)]
+    fn count<T: Term, const TIES: bool>(&mut self, simd: S, asked: usize, row: &Row, depth: usize) -> (usize, bool) {
+        let count = self.relatives.len();
         self.before.clear();
-        for (later, b) in self.sums.iter().enumerate() {
-            let mut before = [0; LANES];
-            for (a, earlier) in self.sums[..later].iter().zip(&mut self.before) {
-                let counts = S::as_mut_simd_u64s(earlier).0.iter_mut().zip(S::as_mut_simd_u64s(&mut before).0);
-                for (((earlier, before), &a), &b) in counts.zip(vectors::<S>(a)).zip(vectors::<S>(b)) {
-                    // Of a pair at equal distance the lower model comes first.
-                    *earlier = count(simd, *earlier, simd.less_than_f64s(b, a));
-                    *before = count(simd, *before, simd.less_than_or_equal_f64s(a, b));
-                }
-            }
-            self.before.push(before);
-        }
-    }
-
-    /// Counts, for each relative, the strangers before it. Relatives that turn out not to be among the first Q of any
-    /// candidate are dropped. False when more than `depth` strangers would have to be looked at.
-    #[inline(always)]
-    fn count_strangers<T: Term, S: Simd>(&mut self, simd: S, asked: usize, row: &Row, depth: usize) -> bool {
-        let (Some(&lowest), Some(&highest)) = (self.relatives.first(), self.relatives.last()) else { return true };
-        let first = self.relatives.len() as u64;
+        self.before.resize(count, simd.splat_u64s(0));
+        // The relatives before `first` are nearer than any stranger left.
+        let (mut first, mut live) = (0, count);
         for (nth, chunk) in row.strangers.chunks(CHUNK).enumerate() {
-            let reach = self.drop_beyond(simd, first);
-            if self.relatives.is_empty() || (nth * CHUNK < HEAD && chunk[0].0 > reach) {
-                return true;
+            while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
+                live -= 1;
+            }
+            while first < live && simd.reduce_max_f64s(self.relatives[first]) < chunk[0].0 {
+                first += 1;
+            }
+            if first == live {
+                return (live, true);
             }
             if nth * CHUNK >= depth {
-                return false;
+                return (live, false);
             }
-            // Of a pair at equal distance the lower model comes first, as if it were a little nearer. Where classes lie
-            // side by side, a stranger is lower than all relatives or higher than all.
-            let apart = chunk.iter().all(|&(_, model)| model < lowest || model > highest);
-            let [exact, nearer] = &mut self.strangers;
-            exact[chunk.len()..].fill([f64::INFINITY; LANES]);
-            for (&stranger, (exact, nearer)) in chunk.iter().zip(exact.iter_mut().zip(&mut *nearer)) {
-                set_sums::<T, S>(simd, exact, &self.values, asked, stranger);
-                if !apart {
-                    *nearer = *exact;
-                    bring_nearer(simd, nearer);
-                } else if stranger.1 < lowest {
-                    bring_nearer(simd, exact);
-                }
+            let mut strangers = [simd.splat_f64s(f64::INFINITY); CHUNK];
+            for (sums, &stranger) in strangers.iter_mut().zip(chunk) {
+                *sums = self.sums::<T>(simd, asked, stranger);
             }
-            let relatives = self.relatives.iter().zip(&self.sums).zip(&mut self.before);
-            for ((&relative, sums), before) in relatives {
-                if apart {
-                    count_chunk(simd, before, sums, |at| &exact[at]);
-                } else {
-                    let lower = |at: usize| chunk.get(at).is_some_and(|&(_, model)| model < relative);
-                    count_chunk(simd, before, sums, |at| if lower(at) { &nearer[at] } else { &exact[at] });
+            for (before, &relative) in self.before[first..live].iter_mut().zip(&self.relatives[first..live]) {
+                for &stranger in &strangers {
+                    let first = if TIES == LEAST {
+                        simd.less_than_f64s(stranger, relative)
+                    } else {
+                        simd.less_than_or_equal_f64s(stranger, relative)
+                    };
+                    *before = simd.select_u64s(first, simd.add_u64s(*before, simd.splat_u64s(1)), *before);
                 }
             }
         }
-        true
+        (live, true)
     }
 
-    /// Drops the relatives that have at least `first` models before them in every lane. Returns the greatest distance
-    /// of any that have fewer.
+    /// The lanes in which the relative at `at` is still among the first Q.
     #[inline(always)]
-    fn drop_beyond<S: Simd>(&mut self, simd: S, first: u64) -> f64 {
-        let mut reach = simd.splat_f64s(-1.0);
-        let mut at = 0;
-        while at < self.relatives.len() {
-            let mut farthest = simd.splat_f64s(-1.0);
-            let before = S::as_simd_u64s(&self.before[at]).0;
-            for (&sums, &before) in vectors::<S>(&self.sums[at]).iter().zip(before) {
-                let within = simd.less_than_u64s(before, simd.splat_u64s(first));
-                farthest = simd.max_f64s(farthest, simd.select_f64s(within, sums, farthest));
+    fn matter(&self, simd: S, at: usize) -> S::m64s {
+        simd.less_than_u64s(self.before[at], simd.splat_u64s((self.relatives.len() - at) as u64))
+    }
+}
+
+#[inline(always)]
+fn none<S: Simd>(simd: S, mask: S::m64s) -> bool {
+    simd.first_true_m64s(mask) == S::F64_LANES
+}
+
+#[inline(always)]
+fn lanes<S: Simd>(vectors: &[S::u64s]) -> &[u64] {
+    pulp::bytemuck::cast_slice(vectors)
+}
+
+/// The exchanges of Batcher's odd-even merge sort for `count` entries: `(a, b)` with a < b, the lesser goes to a.
+pub(super) fn network(count: usize) -> Vec<(u32, u32)> {
+    let mut exchanges = Vec::new();
+    let mut sorted = 1;
+    while sorted < count {
+        let mut apart = sorted;
+        while apart >= 1 {
+            for start in (apart % sorted..count.saturating_sub(apart)).step_by(2 * apart) {
+                for a in start..(start + apart).min(count - apart) {
+                    if a / (2 * sorted) == (a + apart) / (2 * sorted) {
+                        exchanges.push((a as u32, (a + apart) as u32));
+                    }
+                }
             }
-            if simd.reduce_max_f64s(farthest) >= 0.0 {
-                reach = simd.max_f64s(reach, farthest);
-                at += 1;
-            } else {
-                self.relatives.swap_remove(at);
-                self.sums.swap_remove(at);
-                self.before.swap_remove(at);
+            apart /= 2;
+        }
+        sorted *= 2;
+    }
+    exchanges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::network;
+
+    #[test]
+    fn networks_sort() {
+        // A network that sorts all sequences of zeros and ones sorts everything.
+        for count in 0..=14_usize {
+            let network = network(count);
+            for bits in 0..1_u32 << count {
+                let mut values: Vec<u32> = (0..count).map(|at| bits >> at & 1).collect();
+                for &(a, b) in &network {
+                    if values[a as usize] > values[b as usize] {
+                        values.swap(a as usize, b as usize);
+                    }
+                }
+                assert!(values.is_sorted(), "{count}");
             }
         }
-        simd.reduce_max_f64s(reach)
     }
-}
-
-/// Counts the strangers of a chunk that come before a relative.
-#[inline(always)]
-fn count_chunk<'a, S: Simd>(simd: S, before: &mut Counts, sums: &Lanes, strangers: impl Fn(usize) -> &'a Lanes) {
-    for (at, (before, &sums)) in S::as_mut_simd_u64s(before).0.iter_mut().zip(vectors::<S>(sums)).enumerate() {
-        for stranger in 0..CHUNK {
-            *before = count(simd, *before, simd.less_than_f64s(vectors::<S>(strangers(stranger))[at], sums));
-        }
-    }
-}
-
-/// Makes distances a little less.
-#[inline(always)]
-fn bring_nearer<S: Simd>(simd: S, sums: &mut Lanes) {
-    for sums in vectors_mut::<S>(sums) {
-        let bits = simd.sub_u64s(simd.transmute_u64s_f64s(*sums), simd.splat_u64s(1));
-        let positive = simd.greater_than_f64s(*sums, simd.splat_f64s(0.0));
-        *sums = simd.select_f64s(positive, simd.transmute_f64s_u64s(bits), simd.splat_f64s(-1.0));
-    }
-}
-
-/// One more where the mask is set.
-#[inline(always)]
-fn count<S: Simd>(simd: S, counts: S::u64s, mask: S::m64s) -> S::u64s {
-    simd.add_u64s(counts, simd.select_u64s(mask, simd.splat_u64s(1), simd.splat_u64s(0)))
-}
-
-/// The distances to a model that is `sum` away without the candidates.
-#[inline(always)]
-fn set_sums<T: Term, S: Simd>(simd: S, sums: &mut Lanes, values: &[Lanes], asked: usize, (sum, model): (f64, u32)) {
-    let (a, b) = (vectors::<S>(&values[asked]), vectors::<S>(&values[model as usize]));
-    for ((sums, &a), &b) in vectors_mut::<S>(sums).iter_mut().zip(a).zip(b) {
-        *sums = simd.add_f64s(simd.splat_f64s(sum), T::terms(simd, a, b));
-    }
-}
-
-#[inline(always)]
-fn vectors<S: Simd>(lanes: &Lanes) -> &[S::f64s] {
-    S::as_simd_f64s(lanes).0
-}
-
-#[inline(always)]
-fn vectors_mut<S: Simd>(lanes: &mut Lanes) -> &mut [S::f64s] {
-    S::as_mut_simd_f64s(lanes).0
-}
-
-fn greatest(lanes: &Lanes) -> f64 {
-    lanes.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }

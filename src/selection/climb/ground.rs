@@ -6,7 +6,7 @@ use pulp::Simd;
 use rayon::prelude::*;
 
 use super::{
-    block::{Block, LANES},
+    block::{Block, LANES, LEAST, Losses, MOST},
     judge::Judge,
     line::Line,
     race::{Mark, Outcome},
@@ -16,10 +16,8 @@ use crate::{
     watch::Watch,
 };
 
-/// Strangers kept sorted for every model. A multiple of the chunks in which a [`Block`] counts them.
-pub(super) const HEAD: usize = 64;
 /// Strangers looked at in a brief evaluation.
-const BRIEF: usize = 24;
+const BRIEF: usize = 48;
 /// Models asked between two looks at the watch and at the bound.
 const POLL: usize = 16;
 
@@ -27,7 +25,7 @@ const POLL: usize = 16;
 pub(super) struct Row {
     /// Distance sums to all models; infinite for itself and for the padding.
     pub(super) sums: Vec<f64>,
-    /// The models of other classes: the nearest [`HEAD`] ascending, then the rest.
+    /// The models of other classes, nearest first.
     pub(super) strangers: Vec<(f64, u32)>,
     /// Its loss.
     loss: u128,
@@ -95,7 +93,7 @@ impl<'a, T: Term> Ground<'a, T> {
         self.asked.sort_unstable_by_key(|&model| (std::cmp::Reverse(rows[model as usize].loss), model));
     }
 
-    /// The losses with each of at most [`LANES`] indices added.
+    /// The losses with each of some indices added.
     pub(super) fn with(
         &self,
         indices: &[u32],
@@ -105,14 +103,15 @@ impl<'a, T: Term> Ground<'a, T> {
         if self.selected.is_empty() {
             return indices.iter().map(|&index| self.alone(index, bound, watch)).collect();
         }
-        let block = Block::new(&self.columns, indices, self.rows.len());
-        self.ask(indices, bound, watch, With { ground: self, block })
+        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, watch })
     }
 
     /// The loss with `index` alone.
     fn alone(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
-        let line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()]);
-        Ok(self.ask(&[index], bound, watch, Alone { ground: self, line })?[0])
+        let mut line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()]);
+        self.one_by_one(index, bound, watch, |model| {
+            self.judge.loss(model, line.nearest::<T>(model, self.judge.looks_at(model)))
+        })
     }
 
     /// The loss with `index` removed.
@@ -125,155 +124,182 @@ impl<'a, T: Term> Ground<'a, T> {
         if self.selected.len() == 1 {
             return Ok(vec![Outcome::Whole(self.judge.worst())]);
         }
-        let rest = self.selected.iter().copied().filter(|&other| other != index).collect();
-        let nearest = Nearest::new(self.rows.len(), self.columns.stride());
-        self.ask(&[index], bound, watch, Without { ground: self, rest, nearest })
+        let rest: Vec<u32> = self.selected.iter().copied().filter(|&other| other != index).collect();
+        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
+        let outcome = self.one_by_one(index, bound, watch, |model| {
+            nearest.begin(Some(model));
+            self.loss_of(model, &rest, &mut nearest)
+        })?;
+        Ok(vec![outcome])
     }
 
-    fn ask<M: Move>(
+    /// The loss with `index` added.
+    fn exactly(&self, index: u32, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
+        self.one_by_one(index, &|| (u128::MAX, 0), watch, |model| {
+            nearest.begin(Some(model));
+            nearest.sums.copy_from_slice(&self.rows[model].sums);
+            self.loss_of(model, &[index], &mut nearest)
+        })
+    }
+
+    /// The loss of one model at the distances in `nearest` and the features `indices` on top.
+    fn loss_of(&self, model: usize, indices: &[u32], nearest: &mut Nearest) -> u128 {
+        pulp::Arch::new().dispatch(LossOf { ground: self, model, indices, nearest })
+    }
+
+    /// Adds up the losses of all models asked, until `index` can't stay below the bound.
+    fn one_by_one(
         &self,
-        indices: &[u32],
+        index: u32,
         bound: &dyn Fn() -> Mark,
         watch: &dyn Watch,
-        of: M,
-    ) -> Result<Vec<Outcome>, Cancelled> {
-        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, watch, of })
-    }
-}
-
-/// A move that is tried, or several of a kind, one in each lane.
-trait Move {
-    /// The losses of one model asked, and whether they are known. If `briefly`, they may be less than they are in the
-    /// end.
-    fn losses<S: Simd>(&mut self, simd: S, model: usize, briefly: bool) -> ([u128; LANES], bool);
-}
-
-/// Adding a block of candidates to what is selected.
-struct With<'a, T> {
-    ground: &'a Ground<'a, T>,
-    block: Block,
-}
-
-impl<T: Term> Move for With<'_, T> {
-    #[inline(always)]
-    fn losses<S: Simd>(&mut self, simd: S, model: usize, briefly: bool) -> ([u128; LANES], bool) {
-        let depth = if briefly { BRIEF } else { usize::MAX };
-        self.block.losses::<T, S>(simd, model, &self.ground.rows[model], self.ground.judge, depth)
-    }
-}
-
-/// Selecting one feature alone.
-struct Alone<'a, T> {
-    ground: &'a Ground<'a, T>,
-    line: Line<'a>,
-}
-
-impl<T: Term> Move for Alone<'_, T> {
-    #[inline(always)]
-    fn losses<S: Simd>(&mut self, _: S, model: usize, _: bool) -> ([u128; LANES], bool) {
-        let judge = self.ground.judge;
-        (in_first_lane(judge.loss(model, self.line.nearest::<T>(model, judge.looks_at(model)))), true)
-    }
-}
-
-/// Removing one feature, which leaves the rest.
-struct Without<'a, T> {
-    ground: &'a Ground<'a, T>,
-    rest: Vec<u32>,
-    nearest: Nearest,
-}
-
-impl<T: Term> Move for Without<'_, T> {
-    #[inline(always)]
-    fn losses<S: Simd>(&mut self, _: S, model: usize, _: bool) -> ([u128; LANES], bool) {
-        let Self { ground, rest, nearest } = self;
-        nearest.begin(Some(model));
-        for &index in rest.iter() {
-            add::<T>(&mut nearest.sums, &ground.columns, ground.sample.train.row(model), index);
+        mut loss_of: impl FnMut(usize) -> u128,
+    ) -> Result<Outcome, Cancelled> {
+        let mut loss = 0;
+        for (nth, models) in self.asked.chunks(POLL).enumerate() {
+            if watch.cancelled() {
+                return Err(Cancelled);
+            }
+            loss += models.iter().map(|&model| loss_of(model as usize)).sum::<u128>();
+            if (loss, index) >= bound() {
+                let asked = (nth + 1) * POLL;
+                return Ok(Outcome::GivenUp(loss as f64 / self.share(asked)));
+            }
         }
-        let strangers = ground.rows[model].strangers.iter();
-        nearest.seed(ground.judge.looks_at(model), strangers.map(|&(_, other)| other));
-        (in_first_lane(ground.judge.loss(model, nearest.update())), true)
+        Ok(Outcome::Whole(loss))
+    }
+
+    /// The share in the whole loss of the first `count` models asked.
+    fn share(&self, count: usize) -> f64 {
+        let loss = |models: &[u32]| models.iter().map(|&model| self.rows[model as usize].loss).sum::<u128>();
+        let asked = loss(&self.asked[..count.min(self.asked.len())]);
+        asked.max(1) as f64 / loss(&self.asked).max(1) as f64
     }
 }
 
-fn in_first_lane(loss: u128) -> [u128; LANES] {
-    let mut losses = [0; LANES];
-    losses[0] = loss;
-    losses
-}
-
-/// Adds up the losses of all models asked for each of the candidates `indices`, until none of them can stay below the
-/// bound.
+/// Adds up the losses of all models asked for each of the candidates `indices`, a vector of them at a time, until none
+/// of those can stay below the bound.
 ///
 /// First all models are asked briefly, which is enough to give up on most candidates; then those whose losses are not
-/// known yet are asked again.
-struct Ask<'a, T, M> {
+/// known yet are asked again; and for those candidates that may be best, ties are looked into.
+struct Ask<'a, T> {
     ground: &'a Ground<'a, T>,
     indices: &'a [u32],
     bound: &'a dyn Fn() -> Mark,
     watch: &'a dyn Watch,
-    of: M,
 }
 
-impl<T, M: Move> pulp::WithSimd for Ask<'_, T, M> {
+impl<T: Term> pulp::WithSimd for Ask<'_, T> {
     type Output = Result<Vec<Outcome>, Cancelled>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Self::Output {
-        let Ground { rows, asked, .. } = self.ground;
-        let (mut losses, mut before) = ([0; LANES], 0);
-        let mut unsure = Vec::new();
-        for models in asked.chunks(POLL) {
-            for &model in models {
-                let (least, sure) = self.of.losses(simd, model as usize, true);
-                add_lanes(&mut losses, &least);
-                before += rows[model as usize].loss;
-                if !sure {
-                    unsure.push((model, least));
-                }
-            }
-            if self.may_stop(&losses)? {
-                // Those not asked are taken to change as those asked did.
-                let whole = rows.iter().map(|row| row.loss).sum::<u128>();
-                let share = before.max(1) as f64 / whole.max(1) as f64;
-                return Ok(self.outcomes(&losses, |loss| Outcome::GivenUp(loss as f64 / share)));
-            }
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut outcomes = Vec::with_capacity(self.indices.len());
+        for indices in self.indices.chunks(S::F64_LANES) {
+            self.block(simd, indices, &mut outcomes)?;
         }
-        for models in unsure.chunks(POLL) {
-            for &(model, least) in models {
-                let (exact, _) = self.of.losses(simd, model as usize, false);
-                for ((loss, least), exact) in losses.iter_mut().zip(least).zip(exact) {
-                    *loss += exact - least;
-                }
-            }
-            if self.may_stop(&losses)? {
-                return Ok(self.outcomes(&losses, |loss| Outcome::GivenUp(loss as f64)));
-            }
-        }
-        Ok(self.outcomes(&losses, Outcome::Whole))
+        Ok(outcomes)
     }
 }
 
-impl<T, M> Ask<'_, T, M> {
+impl<T: Term> Ask<'_, T> {
+    /// The outcomes of candidates that fit one vector.
+    #[inline(always)]
+    fn block<S: Simd>(&self, simd: S, indices: &[u32], outcomes: &mut Vec<Outcome>) -> Result<(), Cancelled> {
+        let Ground { rows, asked, judge, columns, .. } = self.ground;
+        let mut block = Block::<S>::new(columns, indices, rows.len());
+        let unit = judge.unit() as f64;
+        let mut least = [0; LANES];
+        let mut unsure = Vec::new();
+        for (nth, models) in asked.chunks(POLL).enumerate() {
+            for &model in models {
+                let row = &rows[model as usize];
+                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, BRIEF);
+                add_lanes(&mut least, &losses);
+                if !sure {
+                    unsure.push((model, losses));
+                }
+            }
+            if self.may_stop(indices, &least)? {
+                // Those not asked are taken to change as those asked did.
+                let share = self.ground.share((nth + 1) * POLL);
+                outcomes
+                    .extend(indices.iter().zip(least).map(|(_, loss)| Outcome::GivenUp(loss as f64 * unit / share)));
+                return Ok(());
+            }
+        }
+        for models in unsure.chunks(POLL) {
+            for &(model, briefly) in models {
+                let row = &rows[model as usize];
+                let (losses, _) = block.losses::<T, LEAST>(simd, model as usize, row, judge, usize::MAX);
+                for ((least, briefly), loss) in least.iter_mut().zip(briefly).zip(losses) {
+                    *least += loss - briefly;
+                }
+            }
+            if self.may_stop(indices, &least)? {
+                outcomes.extend(indices.iter().zip(least).map(|(_, loss)| Outcome::GivenUp(loss as f64 * unit)));
+                return Ok(());
+            }
+        }
+        let mut most = [0; LANES];
+        for &model in asked {
+            let row = &rows[model as usize];
+            let (losses, _) = block.losses::<T, MOST>(simd, model as usize, row, judge, usize::MAX);
+            add_lanes(&mut most, &losses);
+        }
+        let unit = judge.unit();
+        for ((&index, least), most) in indices.iter().zip(least).zip(most) {
+            let loss = u128::from(least) * unit;
+            outcomes.push(if unit == 1 && least == most {
+                Outcome::Whole(loss)
+            } else if (loss, index) >= (self.bound)() {
+                Outcome::GivenUp(loss as f64)
+            } else {
+                self.ground.exactly(index, self.watch)?
+            });
+        }
+        Ok(())
+    }
+
     /// Whether no candidate can stay below the bound.
-    fn may_stop(&self, losses: &[u128; LANES]) -> Result<bool, Cancelled> {
+    fn may_stop(&self, indices: &[u32], least: &Losses) -> Result<bool, Cancelled> {
         if self.watch.cancelled() {
             return Err(Cancelled);
         }
         let bound = (self.bound)();
-        Ok(self.indices.iter().zip(losses).all(|(&index, &loss)| (loss, index) >= bound))
-    }
-
-    fn outcomes(&self, losses: &[u128; LANES], outcome: impl Fn(u128) -> Outcome) -> Vec<Outcome> {
-        self.indices.iter().zip(losses).map(|(_, &loss)| outcome(loss)).collect()
+        let unit = self.ground.judge.unit();
+        Ok(indices.iter().zip(least).all(|(&index, &loss)| (u128::from(loss) * unit, index) >= bound))
     }
 }
 
 #[inline(always)]
-fn add_lanes(sums: &mut [u128; LANES], lanes: &[u128; LANES]) {
+fn add_lanes(sums: &mut Losses, lanes: &Losses) {
     for (sum, lane) in sums.iter_mut().zip(lanes) {
         *sum += lane;
+    }
+}
+
+/// The loss of one model at the distances in `nearest` and the features `indices` on top.
+struct LossOf<'a, T> {
+    ground: &'a Ground<'a, T>,
+    model: usize,
+    indices: &'a [u32],
+    nearest: &'a mut Nearest,
+}
+
+impl<T: Term> pulp::NullaryFnOnce for LossOf<'_, T> {
+    type Output = u128;
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let Self { ground, model, indices, nearest } = self;
+        for &index in indices {
+            add::<T>(&mut nearest.sums, &ground.columns, ground.sample.train.row(model), index);
+        }
+        let strangers = ground.rows[model].strangers.iter();
+        nearest.seed(ground.judge.looks_at(model), strangers.map(|&(_, other)| other));
+        ground.judge.loss(model, nearest.update())
     }
 }
 
@@ -315,19 +341,10 @@ impl Row {
         let models = || (0..judge.models()).map(|other| (self.sums[other as usize], other));
         self.strangers.clear();
         self.strangers.extend(models().filter(|&(_, other)| !judge.related(model, other)));
-        let mut top: Vec<_> = models().filter(|&(_, other)| judge.related(model, other)).collect();
-        top.retain(|&(_, other)| other as usize != model);
-        if HEAD < self.strangers.len() {
-            self.strangers.select_nth_unstable_by(HEAD, order);
-        }
-        let head = HEAD.min(self.strangers.len());
-        self.strangers[..head].sort_unstable_by(order);
+        self.strangers.sort_unstable_by(order);
         // As many strangers as there are relatives are enough to know the rank of every relative that matters.
-        let enough = judge.looks_at(model);
-        if enough > head {
-            self.strangers.sort_unstable_by(order);
-        }
-        top.extend(self.strangers.iter().take(enough));
+        let mut top: Vec<_> = self.strangers.iter().copied().take(judge.looks_at(model)).collect();
+        top.extend(models().filter(|&(_, other)| judge.related(model, other) && other as usize != model));
         top.sort_unstable_by(order);
         self.loss = judge.loss(model, &top);
     }

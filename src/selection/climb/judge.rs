@@ -1,6 +1,6 @@
 //! Costs as integers.
 
-use super::Cost;
+use super::{Cost, block::network};
 use crate::metrics::{Exam, Recall, Sample};
 
 /// What the nearest models of a model asked cost: 1 for the wrong class, or what its ADR lacks of 1 in the exact units
@@ -11,6 +11,11 @@ pub(super) struct Judge<'a> {
     recall: Recall,
     /// By class: its training models.
     members: Vec<Vec<u32>>,
+    /// By class: what sorts its members but one.
+    networks: Vec<Vec<(u32, u32)>>,
+    /// By class: the weights of ranks in units, rounded up.
+    credits: Vec<Vec<u64>>,
+    unit: u128,
 }
 
 impl<'a> Judge<'a> {
@@ -20,7 +25,29 @@ impl<'a> Judge<'a> {
         for (model, &label) in (0..).zip(&sample.train_labels) {
             members[label as usize].push(model);
         }
-        Self { cost, exam, recall: exam.recall(), members }
+        let networks = members.iter().map(|members| network(members.len().saturating_sub(1))).collect();
+        let recall = exam.recall();
+        let unit = recall.full().div_ceil(1 << 62).max(1);
+        let credits = |members: &Vec<u32>| match members.len() {
+            0 | 1 => Vec::new(),
+            count => recall.weights(count - 1).iter().map(|weight| weight.div_ceil(unit) as u64).collect(),
+        };
+        let credits = members.iter().map(credits).collect();
+        Self { cost, exam, recall, members, networks, credits, unit }
+    }
+
+    /// The losses of a [`Block`](super::block::Block) are in these units. When it is 1, they are exact; otherwise they
+    /// are rounded down.
+    pub(super) const fn unit(&self) -> u128 {
+        match self.cost {
+            Cost::Error => 1,
+            Cost::Adr => self.unit,
+        }
+    }
+
+    /// What a relevant model adds to the ADR of a model asked, by rank − 1, and what all of them add at best. In units.
+    pub(super) fn credits(&self, asked: usize) -> (&[u64], u64) {
+        (&self.credits[self.exam.label(asked) as usize], (self.recall.scale() / self.unit) as u64)
     }
 
     pub(super) const fn cost(&self) -> Cost {
@@ -42,6 +69,11 @@ impl<'a> Judge<'a> {
         &self.members[self.exam.label(asked) as usize]
     }
 
+    /// The sorting network for the models of the same class without the model itself.
+    pub(super) fn network(&self, asked: usize) -> &[(u32, u32)] {
+        &self.networks[self.exam.label(asked) as usize]
+    }
+
     /// How many models there are to find.
     fn relevant(&self, asked: usize) -> usize {
         self.class(asked).len() - 1
@@ -55,11 +87,6 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// What a relevant model adds to the ADR of a model asked, by rank − 1, and what all of them add at best.
-    pub(super) fn weights(&self, asked: usize) -> (&[u128], u128) {
-        (self.recall.weights(self.relevant(asked)), self.recall.scale())
-    }
-
     /// The loss of one model asked, whose nearest models are `top`.
     pub(super) fn loss(&self, asked: usize, top: &[(f64, u32)]) -> u128 {
         let right = |entry: &(f64, u32)| self.related(asked, entry.1);
@@ -67,9 +94,9 @@ impl<'a> Judge<'a> {
             Cost::Error => u128::from(!top.first().is_some_and(right)),
             Cost::Adr if self.relevant(asked) == 0 => 0,
             Cost::Adr => {
-                let (weights, scale) = self.weights(asked);
+                let weights = self.recall.weights(self.relevant(asked));
                 let found = top.iter().zip(weights).filter(|(entry, _)| right(entry));
-                scale - found.map(|(_, &weight)| weight).sum::<u128>()
+                self.recall.scale() - found.map(|(_, &weight)| weight).sum::<u128>()
             }
         }
     }
