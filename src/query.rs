@@ -6,11 +6,13 @@
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.
 //! - `single`: the spectrum of a mesh file on its own, from the same library.
+//! - `question`, `reasons`: what a view wants to know besides, asked for only while it is shown.
 //! - `inquiry`: a study on other threads; `host`: the owner of all of it; `trace`: what ran.
 
 pub use self::{
     answer::{Answer, ModelRow, ModelState, Part, Progress, Source, Stage, StageRow},
     host::{Cancelled, Config, Host},
+    question::{Finding, Question, Reply},
     settings::{Parameter, Settings},
     single::{Single, SingleError, Singles},
     trace::Query,
@@ -27,6 +29,8 @@ mod host;
 mod inquiry;
 mod library;
 mod pool;
+mod question;
+mod reasons;
 mod rows;
 mod settings;
 mod single;

@@ -10,6 +10,7 @@ pub use self::{
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
     tables::{Cell, Table, tables},
+    why::Method,
 };
 pub use crate::metrics::Sample;
 
@@ -17,6 +18,7 @@ mod boosted;
 mod climbed;
 mod first_k;
 mod tables;
+pub mod why;
 
 /// One figure on the training models (leave-one-out) and, beside it, on the query models.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

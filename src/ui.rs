@@ -23,6 +23,7 @@ use crate::workbench::{State, View};
 use ratatui::{Frame, layout::Rect};
 
 mod ascii;
+mod confusion;
 mod curves;
 mod dots;
 mod footer;
@@ -31,6 +32,8 @@ mod heading;
 mod help;
 mod look;
 mod models;
+mod names;
+mod neighbours;
 mod number;
 mod overview;
 mod pane;
@@ -107,5 +110,7 @@ fn view(state: &State, pane: &mut Pane<'_>) {
         View::Selection => selection::draw(state, pane),
         View::Pipeline => pipeline::draw(state, pane),
         View::Models => models::draw(state, pane),
+        View::Confusion => confusion::draw(state, pane),
+        View::Neighbours => neighbours::draw(state, pane),
     }
 }

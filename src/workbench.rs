@@ -11,16 +11,20 @@
 
 pub use self::{
     action::{Action, Effect, Leave},
+    asking::{ALL_FIGURES, Answered, Replies},
     entry::Entry,
     history::History,
     message::{Command, Update},
-    models::{Filter, ModelList},
+    models::{Filter, ModelList, Only, Sort},
     state::{Figure, Notice, State, View},
     update::update,
+    why::{Matrix, Side, Why},
 };
 
 mod action;
+mod asking;
 mod entry;
+mod explore;
 mod history;
 pub mod keymap;
 mod message;
@@ -28,4 +32,5 @@ mod models;
 pub mod parameters;
 mod state;
 mod update;
+mod why;
 pub mod worker;

@@ -1,5 +1,7 @@
 //! The screen as literal text, at the sizes it is used at, and without a panic at all others.
 
+#[path = "screen/replies.rs"]
+mod replies;
 #[path = "screen/sample.rs"]
 mod sample;
 
@@ -18,7 +20,9 @@ use ratatui::{
 };
 use unicode_width::UnicodeWidthStr;
 
+const NARROW: (u16, u16) = (60, 18);
 const SMALL: (u16, u16) = (80, 24);
+const MEDIUM: (u16, u16) = (120, 40);
 const LARGE: (u16, u16) = (200, 60);
 
 fn buffer(state: &State, look: Look, (columns, rows): (u16, u16)) -> Buffer {
@@ -54,7 +58,7 @@ fn drawn(state: &State, size: (u16, u16)) -> String {
 
 fn shown(mut state: State, view: View) -> State {
     update(&mut state, Action::Show(view));
-    state
+    replies::served(state)
 }
 
 fn compare(name: &str, screen: &str) {
@@ -66,16 +70,45 @@ fn compare(name: &str, screen: &str) {
 }
 
 #[test]
-fn every_view_on_a_small_screen() {
+fn every_view_at_the_usual_sizes() {
     for view in View::ALL {
-        compare(&format!("{}-80x24", view.name()), &drawn(&shown(sample::state(sample::full()), view), SMALL));
+        for (columns, rows) in [NARROW, SMALL, MEDIUM, LARGE] {
+            let mut state = sample::state(sample::full());
+            update(&mut state, Action::Resize(columns, rows));
+            let screen = drawn(&shown(state, view), (columns, rows));
+            compare(&format!("{}-{columns}x{rows}", view.name()), &screen);
+        }
     }
 }
 
 #[test]
-fn every_view_on_a_large_screen() {
-    for view in View::ALL {
-        compare(&format!("{}-200x60", view.name()), &drawn(&shown(sample::state(sample::full()), view), LARGE));
+fn the_other_faces_of_the_explaining_views() {
+    let mut state = shown(sample::state(sample::full()), View::Neighbours);
+    update(&mut state, Action::Down);
+    update(&mut state, Action::ToggleOverlay);
+    compare("Neighbours-overlaid", &drawn(&state, SMALL));
+    update(&mut state, Action::TurnMethod(-1));
+    compare("Neighbours-votes", &drawn(&replies::served(state), SMALL));
+    let mut state = shown(sample::state(sample::full()), View::Selection);
+    state.figure = Figure::Shared;
+    compare("Shared-80x24", &drawn(&replies::served(state), SMALL));
+}
+
+#[test]
+fn from_a_wrong_cell_to_a_model_and_back() {
+    let mut state = shown(sample::state(sample::full()), View::Confusion);
+    update(&mut state, Action::NextConfusion);
+    update(&mut state, Action::Open);
+    compare("Confusion-opened", &drawn(&state, SMALL));
+    update(&mut state, Action::Open);
+    assert_eq!(state.view, View::Neighbours);
+    let model = state.model();
+    let mut state = replies::served(state);
+    update(&mut state, Action::Open);
+    assert_ne!(state.model(), model, "a neighbour is another model");
+    for view in [View::Neighbours, View::Models, View::Confusion] {
+        update(&mut state, Action::Back);
+        assert_eq!(state.view, view);
     }
 }
 
@@ -91,7 +124,6 @@ fn figure_4_on_a_small_screen() {
 
 #[test]
 fn a_narrow_screen_has_its_parameters_in_a_strip() {
-    compare("Overview-60x18", &drawn(&sample::state(sample::full()), (60, 18)));
     compare("Models-44x14", &drawn(&shown(sample::state(sample::full()), View::Models), (44, 14)));
     compare("Tables-30x8", &drawn(&shown(sample::state(sample::full()), View::Tables), (30, 8)));
     compare("too-small-20x5", &drawn(&sample::state(sample::full()), (20, 5)));
@@ -211,13 +243,16 @@ fn moods() -> Vec<State> {
             state.compared.extend(0..30);
             state.scroll = 1000;
             state.models.at = 1000;
+            state.why.neighbour = 1000;
+            state.why.cell = (1000, 7);
             moods.push(state.clone());
-            state.figure = Figure::Marks;
+            state.figure = if view == View::Selection { Figure::Shared } else { Figure::Marks };
+            state.why.overlaid = true;
             state.logarithmic = false;
             state.scroll = 3;
             state.settings.class = 19;
             state.settings.k = 5000;
-            moods.push(state);
+            moods.push(replies::served(state));
         }
     }
     let mut helped = sample::state(sample::full());

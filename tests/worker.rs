@@ -12,9 +12,10 @@ use std::{
 
 use eigenselect::{
     dataset,
-    query::{Answer, Config, Host, ModelState, Settings},
+    query::{Answer, Config, Finding, Host, ModelState, Question, Reply, Settings},
     spectrum::Normalisation,
     store::Store,
+    study::Method,
     watch::Unwatched,
     workbench::{
         Command, Update,
@@ -46,7 +47,7 @@ fn wait_for(updates: &mpsc::Receiver<Update>, right: impl Fn(&Answer) -> bool) -
     loop {
         match updates.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
             Ok(Update::Answer(answer)) if right(&answer) => return answer,
-            Ok(Update::Answer(_)) => {}
+            Ok(Update::Answer(_) | Update::Reply(_)) => {}
             Ok(Update::Fatal(reason)) => panic!("{reason}"),
             Err(error) => panic!("no such answer came: {error}"),
         }
@@ -131,13 +132,54 @@ fn ends_at_once_in_the_middle_of_a_run() {
     assert!(start.elapsed() < Duration::from_millis(200), "{:?}", start.elapsed());
 }
 
+/// The first reply for which `right` holds.
+fn wait_for_reply(updates: &mpsc::Receiver<Update>, right: impl Fn(&Reply) -> bool) -> Arc<Reply> {
+    let deadline = Instant::now() + Duration::from_mins(1);
+    loop {
+        match updates.recv_timeout(deadline.saturating_duration_since(Instant::now())) {
+            Ok(Update::Reply(reply)) if right(&reply) => return reply,
+            Ok(Update::Reply(_) | Update::Answer(_)) => {}
+            Ok(Update::Fatal(reason)) => panic!("{reason}"),
+            Err(error) => panic!("no such reply came: {error}"),
+        }
+    }
+}
+
+#[test]
+fn questions_are_answered_again_when_a_knob_changes_their_answer() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 5);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    let method = Method::FirstK;
+    // Asked before there is a study: the answer comes with it.
+    worker.send(Command::Ask(vec![Question::Decisions(method), Question::Reasons { method, model: 3 }]));
+    let reply =
+        wait_for_reply(&updates, |reply| reply.question == Question::Decisions(method) && reply.places.len() == 15);
+    let Ok(Finding::Decisions(decisions)) = &reply.finding else { panic!("{reply:?}") };
+    assert_eq!(decisions.truth.len(), 15);
+    let at =
+        |k: usize| move |reply: &Reply| reply.settings.k == k && matches!(reply.question, Question::Reasons { .. });
+    worker.send(Command::Set(Settings { k: 2, ..small() }));
+    let reply = wait_for_reply(&updates, at(2));
+    let Ok(Finding::Neighbours(found)) = &reply.finding else { panic!("{reply:?}") };
+    assert_eq!((found.selection.as_slice(), reply.places[found.asked]), ([1, 2].as_slice(), 3));
+    worker.send(Command::Set(Settings { k: 31, ..small() }));
+    let reply = wait_for_reply(&updates, at(31));
+    assert_eq!(reply.finding.as_ref().unwrap_err().as_ref(), "k = 31 is beyond kmax = 30");
+    // Each question is answered on its own thread, and a shape needs no study.
+    worker.send(Command::Ask(vec![Question::Shape(0), Question::Shape(99)]));
+    let reply = wait_for_reply(&updates, |reply| reply.question == Question::Shape(0));
+    assert!(matches!(&reply.finding, Ok(Finding::Shape(mesh)) if !mesh.triangles().is_empty()), "{reply:?}");
+}
+
 #[test]
 fn a_folder_that_is_not_there_is_told() {
     let folder = common::scratch();
     let (_worker, updates) = spawn(setup(&folder.path().join("nowhere"), folder.path(), &small()));
     match updates.recv_timeout(Duration::from_mins(1)).unwrap() {
         Update::Fatal(reason) => assert!(reason.contains("nowhere"), "{reason}"),
-        Update::Answer(_) => panic!("an answer from nowhere"),
+        Update::Answer(_) | Update::Reply(_) => panic!("an answer from nowhere"),
     }
 }
 

@@ -201,7 +201,7 @@ pub(crate) struct BoostKey<'db> {
     pub(crate) rounds: usize,
 }
 
-fn trace(db: &dyn Db) -> &Trace {
+pub(super) fn trace(db: &dyn Db) -> &Trace {
     db.library().trace()
 }
 

@@ -329,6 +329,11 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|error| format!("cannot be read: {error}").into())
 }
 
+/// The mesh in `file`, in its canonical form. It is not kept.
+pub(crate) fn canonical(file: FileAt<'_>) -> Result<Mesh, Failure> {
+    load(file).map(|mesh| mesh.canonical()).map_err(|failure| failure.reason)
+}
+
 /// Reads the mesh, and makes sure that it is still the one meant.
 fn load(file: FileAt<'_>) -> Result<Mesh, Unread> {
     let bytes = read(file.path)?;

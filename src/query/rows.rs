@@ -23,7 +23,7 @@ use crate::{
 const ROUNDS_AHEAD: usize = 64;
 
 /// The widest sample that holds the first kmax features as they would be at kmax.
-fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> {
+pub(super) fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> {
     let normalisation = Knobs::get(db).normalisation(db);
     let width = if normalisation.depends_on_kmax() { Knobs::get(db).kmax(db) } else { cohort.reach(db) };
     of_width(db, cohort, width)
@@ -61,7 +61,7 @@ pub(crate) fn climb_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>, cost: Cost) 
 }
 
 /// Every class's strong classifier over the first kmax features, T rounds of it, and the sample it was learnt on.
-fn strong<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<(Vec<Strong>, SampleKey<'db>), Failure> {
+pub(super) fn strong<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<(Vec<Strong>, SampleKey<'db>), Failure> {
     let knobs = Knobs::get(db);
     let (rounds, kmax) = (knobs.rounds(db), knobs.kmax(db));
     let run = rounds.next_power_of_two().max(ROUNDS_AHEAD);

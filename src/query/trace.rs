@@ -35,6 +35,14 @@ pub enum Query {
     MarkRows,
     /// Tables 1 to 4.
     TableRows,
+    /// What a method decides for every model.
+    DecisionRows,
+    /// The neighbours of a model.
+    NeighbourRows,
+    /// What the strong classifiers say of a model.
+    VoteRows,
+    /// Where the models of a class keep together.
+    SharedRows,
 }
 
 /// Work done at one stage.

@@ -141,6 +141,10 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 self.fresh = true;
                 self.apply(Action::Answer(answer));
             }
+            Event::Update(Update::Reply(reply)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Reply(reply));
+            }
             Event::Update(Update::Fatal(reason)) => {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Fatal(reason));
@@ -176,10 +180,13 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
         Ok(None)
     }
 
-    /// Applies an action that asks for nothing.
+    /// Applies news: they ask for nothing but what the view wants to know next.
     fn apply(&mut self, action: Action) {
-        let effects = update(&mut self.state, action);
-        debug_assert!(effects.is_empty(), "{effects:?}");
+        for effect in update(&mut self.state, action) {
+            if let Effect::Send(command) = effect {
+                self.engine.send(command);
+            }
+        }
     }
 
     fn resume(&mut self) -> io::Result<()> {

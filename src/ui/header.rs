@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  eigenselect  shrec07 · Princeton .cla        20 classes · 380 models · D 285 · Q 95
-//!  1 Overview  2 Curves  3 Tables  4 Selection  5 Pipeline !2  6 Models ×1
+//!  1 Overview  2 Curves  3 Tables  4 Selection  5!Pipeline  6×Models  …
 //! ```
 
 use super::{look::Role, number, pane::Pane, text};
@@ -48,31 +48,37 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     }
 }
 
-/// One line: the views, their keys, and what in them wants to be seen.
+/// What stands between a view's digit and its name where something in it wants to be seen.
+fn alert(state: &State, view: View) -> Option<char> {
+    match view {
+        View::Pipeline if !state.answer.warnings.is_empty() => Some('!'),
+        View::Models if state.answer.progress.out > 0 => Some('×'),
+        _ => None,
+    }
+}
+
+/// One line: the views, their keys, and what in them wants to be seen. Names give way to brief ones, then the gaps to
+/// single ones, then all names but the one of the view shown.
 pub(super) fn tabs(state: &State, pane: &mut Pane<'_>) {
-    let answer = &state.answer;
-    let tabs: Vec<(View, String, String)> = (1..)
-        .zip(View::ALL)
-        .map(|(digit, view)| {
-            let alert = match view {
-                View::Pipeline if !answer.warnings.is_empty() => format!(" !{}", answer.warnings.len()),
-                View::Models if answer.progress.out > 0 => format!(" ×{}", answer.progress.out),
-                _ => String::new(),
-            };
-            (view, format!("{digit} {}", view.name()), alert)
-        })
-        .collect();
-    let wanted: usize = tabs.iter().map(|(_, label, alert)| text::width(label) + text::width(alert) + 2).sum();
-    let short = wanted > pane.width() as usize;
+    let digits = ('1'..='9').chain(['0']);
+    let width = pane.width() as usize;
+    let long: usize = View::ALL.iter().map(|view| view.name().len() + 4).sum();
+    let brief: usize = View::ALL.iter().map(|view| view.brief().len() + 3).sum();
+    let (gap, name): (&str, fn(View) -> &'static str) = match width {
+        _ if long <= width => (" ", View::name),
+        _ if brief < width => ("", View::brief),
+        _ => ("", |_| ""),
+    };
     let mut x = 0;
-    for (view, label, alert) in &tabs {
-        let here = *view == state.view;
-        let shown = if short && !here { &label[..1] } else { label };
+    for (digit, view) in digits.zip(View::ALL) {
+        let here = view == state.view;
         let role = if here { Role::Chosen } else { Role::Plain };
-        x = pane.spans(
-            x,
-            0,
-            [(" ", role), (shown, role), (alert.as_str(), if here { role } else { Role::Warn }), (" ", role)],
-        );
+        let shown = if here && name(view).is_empty() { view.name() } else { name(view) };
+        let alert = alert(state, view);
+        let mark = alert.map_or_else(|| if shown.is_empty() { "" } else { " " }.to_owned(), String::from);
+        let warn = if here { role } else { Role::Warn };
+        let digit = format!(" {gap}{digit}");
+        let digit = if gap.is_empty() { digit } else { digit[1..].to_owned() };
+        x = pane.spans(x, 0, [(digit.as_str(), role), (mark.as_str(), warn), (shown, role), (gap, role)]);
     }
 }

@@ -38,35 +38,42 @@ fn rows(ascii: bool) -> Vec<Row> {
     rows
 }
 
-/// Draws the box in the middle of the pane.
+/// Columns between two columns of keys.
+const GAP: u16 = 3;
+
+/// Draws the box in the middle of the pane, in as many columns as it needs and there is room for.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let rows = rows(pane.look().ascii);
-    let column = |of: fn(&Row) -> usize| rows.iter().map(of).max().unwrap_or(0);
-    let keys = column(|row| if let Row::Keys(keys, _) = row { text::width(keys) } else { 0 });
-    let about = column(|row| if let Row::Keys(_, about) = row { text::width(about) } else { 0 });
-    let wide = (keys + about + 8).min(pane.width() as usize) as u16;
-    let high = (rows.len() + 2).min(pane.height() as usize) as u16;
+    let widest = |of: fn(&Row) -> usize| rows.iter().map(of).max().unwrap_or(0);
+    let keys = widest(|row| if let Row::Keys(keys, _) = row { text::width(keys) } else { 0 });
+    let about = widest(|row| if let Row::Keys(_, about) = row { text::width(about) } else { 0 });
+    let one = (keys + about + 4) as u16;
+    let room = (pane.height().saturating_sub(2) as usize).max(1);
+    let across = rows.len().div_ceil(room).min((pane.width().saturating_sub(4) / (one + GAP)) as usize).max(1);
+    let lines = rows.len().div_ceil(across).min(room);
+    let wide = (across as u16 * (one + GAP) - GAP + 4).min(pane.width());
+    let high = (lines as u16 + 2).min(pane.height());
     let area = pane.area();
     let place = Rect::new(area.x + (area.width - wide) / 2, area.y + (area.height - high) / 2, wide, high);
     let mut pane = pane.part(place);
     pane.clear();
     frame(&mut pane);
-    let lines = high.saturating_sub(2) as usize;
-    let first = state.help.unwrap_or(0).min(rows.len().saturating_sub(lines));
-    for (y, row) in (1..).zip(rows.iter().skip(first).take(lines)) {
+    let first = state.help.unwrap_or(0).min(rows.len().saturating_sub(lines * across));
+    for (place, row) in rows.iter().skip(first).take(lines * across).enumerate() {
+        let (x, y) = (2 + (place / lines) as u16 * (one + GAP), 1 + (place % lines) as u16);
         match row {
             Row::Heading(heading) => {
-                pane.put(2, y, heading, Role::Strong);
+                pane.put(x, y, heading, Role::Strong);
             }
             Row::Keys(label, about) => {
-                pane.put(4, y, label, Role::Train);
-                let at = 6 + keys as u16;
-                pane.put(at, y, &text::fit(about, (wide.saturating_sub(at + 2)) as usize), Role::Plain);
+                pane.put(x + 2, y, label, Role::Train);
+                let at = x + 4 + keys as u16;
+                pane.put(at, y, &text::fit(about, wide.saturating_sub(at + 2) as usize), Role::Plain);
             }
             Row::Gap => {}
         }
     }
-    let below = rows.len().saturating_sub(first + lines);
+    let below = rows.len().saturating_sub(first + lines * across);
     let more = match (first, below) {
         (0, 0) => String::new(),
         (_, 0) => format!(" ↑ {first} more "),

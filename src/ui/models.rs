@@ -17,6 +17,7 @@ use ratatui::layout::Rect;
 use super::{
     dots::Stroke,
     look::Role,
+    names::{self, Names},
     number,
     pane::{self, Pane},
     plot::{Axis, Plot, Series},
@@ -25,7 +26,7 @@ use super::{
 use crate::{
     dataset::Role as Side,
     query::{Answer, ModelRow, ModelState, Source},
-    workbench::{Filter, State},
+    workbench::{Filter, Sort, State},
 };
 
 /// The view.
@@ -57,12 +58,21 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
 
 fn heading(state: &State, listed: usize, pane: &mut Pane<'_>) {
     let all = state.answer.models.len();
-    let said = match state.models.filter {
-        Filter::All => number::count(all, "model"),
-        filter => format!("{listed} of {all}: {}", filter.name()),
+    let list = &state.models;
+    let mut said = match (&list.only, list.filter) {
+        _ if !list.narrowed() => number::count(all, "model"),
+        (Some(only), Filter::All) => format!("{listed} of {all}: {}", only.label),
+        (_, filter) => format!("{listed} of {all}: {}", filter.name()),
     };
-    pane.put(1, 0, &text::fit(&said, (pane.width() as usize).saturating_sub(1)), Role::Strong);
-    let at = format!("{}/{listed}", (state.models.at + 1).min(listed));
+    if !list.needle.is_empty() {
+        said = format!("{said} with \"{}\"", list.needle);
+    }
+    if list.sort != Sort::default() {
+        said = format!("{said}, {}", list.sort.name());
+    }
+    let at = format!("{}/{listed}", (list.at + 1).min(listed));
+    let room = (pane.width() as usize).saturating_sub(at.len() + 3);
+    pane.put(1, 0, &text::fit(&said, room), Role::Strong);
     pane.put_right(pane.width().saturating_sub(1), 0, &at, Role::Faint);
 }
 
@@ -96,9 +106,10 @@ fn list_of(state: &State, listed: &[usize], pane: &mut Pane<'_>) {
     // mark 3, side 3, vertices 8, spectrum 14; the rest is shared by name and class.
     let free = width.saturating_sub(3 + 3 + 8 + 15);
     let longest = |of: &dyn Fn(&ModelRow) -> usize| answer.models.iter().map(of).max().unwrap_or(0);
-    let class_name = |model: &ModelRow| answer.classes.get(model.class as usize).map_or("", String::as_str).to_owned();
-    let class = longest(&|m| text::width(&class_name(m))).clamp(5, (free / 2).max(5));
-    let name = longest(&|m| text::width(&m.name)).clamp(5, free.saturating_sub(class + 1).max(5));
+    let names = Names::new(answer);
+    let class_name = |model: &ModelRow| names::class(answer, model.class as usize);
+    let class = longest(&|m| text::width(class_name(m))).clamp(5, (free / 2).max(5));
+    let name = longest(&|m| text::width(names.of(m))).clamp(5, free.saturating_sub(class + 1).max(5));
     let (class_at, side_at) = ((3 + name + 1) as u16, (3 + name + 1 + class + 1) as u16);
     let (size_end, state_at) = (side_at + 10, side_at + 12);
     pane.put(3, 0, "name", Role::Faint);
@@ -116,8 +127,8 @@ fn list_of(state: &State, listed: &[usize], pane: &mut Pane<'_>) {
         let model = &answer.models[index];
         let (mark, role) = mark(model);
         pane.put(1, y, mark, role);
-        pane.put(3, y, &text::fit_end(&model.name, name), Role::Plain);
-        pane.put(class_at, y, &text::fit(&class_name(model), class), Role::Plain);
+        pane.put(3, y, &text::fit_end(names.of(model), name), Role::Plain);
+        pane.put(class_at, y, &text::fit(class_name(model), class), Role::Plain);
         pane.put(side_at, y, side(model.role), side_role(model.role));
         if let Some((vertices, _)) = model.size {
             pane.put_right(size_end, y, &vertices.to_string(), Role::Plain);
@@ -155,8 +166,8 @@ fn standing(model: &ModelRow) -> (String, Role) {
 /// Everything there is on one model.
 fn details(answer: &Answer, model: &ModelRow, pane: &mut Pane<'_>) {
     let width = (pane.width() as usize).saturating_sub(2);
-    let class = answer.classes.get(model.class as usize).map_or("", String::as_str);
-    let x = pane.put(1, 0, &text::fit_end(&model.name, width / 2), Role::Strong);
+    let class = names::class(answer, model.class as usize);
+    let x = pane.put(1, 0, &text::fit_end(Names::new(answer).of(model), width / 2), Role::Strong);
     let x = pane.put(x + 2, 0, &text::fit(class, width / 3), Role::Plain);
     let x = pane.put(x + 2, 0, side(model.role), side_role(model.role));
     let path = text::fit_end(&model.path.to_string_lossy(), width.saturating_sub(x as usize + 2));

@@ -10,7 +10,7 @@
 //!   12  α 1.73  0.021 – 0.034 …
 //! ```
 //!
-//! On small screens one of the map, Figure 4 and the way of hill climbing; on large ones all three.
+//! On small screens one of the map, Figure 4, the way of hill climbing and the class's shared bands; on large ones all.
 
 use super::{
     footer,
@@ -23,12 +23,15 @@ use super::{
 use crate::{
     query::Stage,
     study::Mark,
-    workbench::{Figure, State},
+    workbench::{ALL_FIGURES, Figure, State},
 };
+
+pub(super) use self::bands::unit;
 
 mod bands;
 mod climb;
 mod scatter;
+mod shared;
 
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
@@ -39,12 +42,13 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         _ => 10,
     };
     let list = pane::cut_bottom(&mut rest, listed);
-    if rest.width >= 100 {
+    if state.size.0 >= ALL_FIGURES {
         let half = rest.width / 2;
-        let map_area = pane::cut_left(&mut rest, half);
-        map(state, &mut pane.part(map_area));
+        let mut left = pane::cut_left(&mut rest, half);
         let below = rest.height / 3;
-        let way = pane::cut_bottom(&mut rest, below);
+        let (bands, way) = (pane::cut_bottom(&mut left, below), pane::cut_bottom(&mut rest, below));
+        map(state, &mut pane.part(left));
+        shared::draw(state, &mut pane.part(bands));
         scatter(state, &mut pane.part(rest));
         climb::draw(state, &mut pane.part(way));
     } else {
@@ -52,6 +56,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
             Figure::Map => map(state, &mut pane.part(rest)),
             Figure::Marks => scatter(state, &mut pane.part(rest)),
             Figure::Climb => climb::draw(state, &mut pane.part(rest)),
+            Figure::Shared => shared::draw(state, &mut pane.part(rest)),
         }
     }
     if listed > 0 {
@@ -66,7 +71,7 @@ fn stale(state: &State) -> bool {
 
 /// Figure 5.
 pub(super) fn map(state: &State, pane: &mut Pane<'_>) {
-    let title = format!("Figure 5: bands selected, {}", bands::unit(state.settings.normalisation));
+    let title = format!("Figure 5: bands selected, {}", unit(state.settings.normalisation));
     figure(state, &title, bands::draw, pane);
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Command, View};
-use crate::query::{Answer, Parameter};
+use crate::query::{Answer, Parameter, Reply};
 
 /// Something that happened: a key's meaning, or news.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,8 +66,28 @@ pub enum Action {
     Compare,
     /// Compare no classes.
     CompareNone,
-    /// List all models, those with a defect, or those that take no part.
+    /// List other models: all of them, those with a defect, and so on.
     CycleFilter,
+    /// List them in another order.
+    CycleSort,
+    /// List all models.
+    ListAll,
+    /// Explain another method, so many places further.
+    TurnMethod(isize),
+    /// Count other models in the confusion matrix.
+    CycleSide,
+    /// The two spectra over each other, or the terms of their distance.
+    ToggleOverlay,
+    /// Move the cell of the confusion matrix: down and to the right.
+    Cell(isize, isize),
+    /// To the fullest wrong cell after this one.
+    NextConfusion,
+    /// Open what the cursor is on.
+    Open,
+    /// Back to what was looked at before.
+    Back,
+    /// The model before or after, wherever a model is shown.
+    Step(isize),
     /// A character typed into the entry.
     Insert(char),
     /// Delete the character before the entry's caret.
@@ -84,6 +104,8 @@ pub enum Action {
     Resize(u16, u16),
     /// An answer of the engine.
     Answer(Arc<Answer>),
+    /// An answer of the engine to a question.
+    Reply(Arc<Reply>),
     /// The engine cannot go on.
     Fatal(String),
     /// Something the user should know, in one line.

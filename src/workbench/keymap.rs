@@ -1,7 +1,8 @@
 //! Which key does what: one table, from which come the look-up, the help and the footer's hints.
 
-use super::{Action, State, View, parameters};
-use crate::query::Parameter;
+use std::collections::HashSet;
+
+use super::{Action, State, View};
 
 /// A key as a terminal can tell it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -74,7 +75,7 @@ pub enum Context {
 
 impl Context {
     /// All contexts, in the order of the help.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Views,
         Self::In(View::Overview),
         Self::In(View::Curves),
@@ -82,6 +83,8 @@ impl Context {
         Self::In(View::Selection),
         Self::In(View::Pipeline),
         Self::In(View::Models),
+        Self::In(View::Confusion),
+        Self::In(View::Neighbours),
         Self::Entry,
         Self::Help,
         Self::Always,
@@ -121,149 +124,16 @@ type Row = (Context, Vec<(Key, Action)>, &'static str, &'static str, &'static st
 /// The table.
 #[must_use]
 pub fn bindings() -> Vec<Binding> {
-    in_views()
+    table::rows()
         .into_iter()
-        .chain(in_one_view())
-        .chain(elsewhere())
         .map(|(context, keys, label, about, hint)| Binding {
             context,
-            label: if label.is_empty() { names(&keys) } else { label.to_owned() },
+            label: if label.is_empty() { table::names(&keys) } else { label.to_owned() },
             keys,
             about: about.to_owned(),
             hint: (!hint.is_empty()).then_some(hint),
         })
         .collect()
-}
-
-fn in_views() -> Vec<Row> {
-    use Context::Views;
-    use Key::{BackTab, Char, Ctrl, Down, End, Enter, F, Home, Left, PageDown, PageUp, Right, Tab, Up};
-    vec![
-        (Views, vec![(Left, Action::Turn(-1)), (Right, Action::Turn(1))], "← →", "turn the parameter", "turn"),
-        (Views, vec![(Char('-'), Action::Turn(-1)), (Char('+'), Action::Turn(1))], "- +", "the same", ""),
-        (
-            Views,
-            vec![
-                (Key::ShiftLeft, Action::Leap(-1)),
-                (Key::ShiftRight, Action::Leap(1)),
-                (Char('<'), Action::Leap(-1)),
-                (Char('>'), Action::Leap(1)),
-            ],
-            "< >  Shift-← →",
-            "turn it by a big step",
-            "",
-        ),
-        (
-            Views,
-            vec![(Up, Action::Up), (Down, Action::Down)],
-            "↑ ↓",
-            "the parameter before, after; in Models the model",
-            "choose",
-        ),
-        (Views, letters(), "", "choose that parameter: operator, mass, kmax, …", ""),
-        (Views, vec![(Enter, Action::Edit), (Char('='), Action::Edit)], "", "type a value", "type"),
-        (Views, vec![(Char('r'), Action::Reset)], "", "the parameter's first value", ""),
-        (Views, vec![(Char('R'), Action::ResetAll)], "", "every parameter's first value", ""),
-        (Views, vec![(Char('u'), Action::Undo)], "", "undo the last change of parameters", "undo"),
-        (Views, vec![(Char('U'), Action::Redo), (Ctrl('r'), Action::Redo)], "", "redo", ""),
-        (Views, numbers(), "1 – 6", "show that view", "view"),
-        (
-            Views,
-            vec![(Tab, Action::NextView), (BackTab, Action::PreviousView)],
-            "",
-            "the next view, the one before",
-            "",
-        ),
-        (
-            Views,
-            vec![(PageUp, Action::PageUp), (PageDown, Action::PageDown)],
-            "",
-            "scroll the view, or page through the models",
-            "",
-        ),
-        (Views, vec![(Home, Action::First), (End, Action::Last)], "", "to the beginning, to the end", ""),
-        (Views, vec![(Char(' '), Action::ToggleSolving)], "", "stop solving spectra, go on", ""),
-        (Views, vec![(F(5), Action::Rescan)], "", "look at the files again", ""),
-        (Views, vec![(Char('?'), Action::Help), (F(1), Action::Help)], "", "this help", "help"),
-        (Views, vec![(Char('q'), Action::Quit)], "", "quit", "quit"),
-    ]
-}
-
-fn in_one_view() -> Vec<Row> {
-    use Context::In;
-    use Key::Char;
-    vec![
-        (In(View::Overview), vec![(Char('g'), Action::ToggleAxis)], "", "the k axis logarithmic or linear", "axis"),
-        (In(View::Curves), vec![(Char('g'), Action::ToggleAxis)], "", "the k axis logarithmic or linear", "axis"),
-        (
-            In(View::Selection),
-            vec![(Char('f'), Action::ToggleFigure)],
-            "",
-            "the map (Figure 5), the eigenvalues (Figure 4), or hill climbing",
-            "figure",
-        ),
-        (
-            In(View::Selection),
-            vec![(Char('a'), Action::Compare)],
-            "",
-            "keep the class in the figure beside others, or no longer",
-            "add class",
-        ),
-        (In(View::Selection), vec![(Char('A'), Action::CompareNone)], "", "the parameter's class alone", ""),
-        (
-            In(View::Models),
-            vec![(Char('w'), Action::CycleFilter)],
-            "",
-            "all models, those with defects, those that take no part",
-            "filter",
-        ),
-    ]
-}
-
-fn elsewhere() -> Vec<Row> {
-    use Context::{Always, Entry, Help};
-    use Key::{Char, Ctrl, Down, End, Enter, Esc, F, Home, Left, PageDown, PageUp, Right, Up};
-    vec![
-        (Entry, vec![(Enter, Action::Commit)], "", "take the value", "take it"),
-        (Entry, vec![(Esc, Action::Close)], "", "leave the value as it was", "leave it"),
-        (Entry, vec![(Key::Backspace, Action::Erase)], "", "erase a character", ""),
-        (Entry, vec![(Ctrl('u'), Action::EraseAll)], "", "erase everything before the caret", ""),
-        (Entry, vec![(Left, Action::Left), (Right, Action::Right)], "← →", "move the caret", ""),
-        (
-            Help,
-            vec![(Up, Action::Up), (Down, Action::Down), (PageUp, Action::PageUp), (PageDown, Action::PageDown)],
-            "",
-            "scroll",
-            "scroll",
-        ),
-        (Help, vec![(Home, Action::First), (End, Action::Last)], "", "to the beginning, to the end", ""),
-        (
-            Help,
-            vec![(Esc, Action::Close), (Char('?'), Action::Close), (Char('q'), Action::Close), (F(1), Action::Close)],
-            "",
-            "close the help",
-            "close",
-        ),
-        (Always, vec![(Ctrl('c'), Action::Interrupt)], "", "quit at once", ""),
-        (Always, vec![(Ctrl('z'), Action::Suspend)], "", "back to the shell; fg returns", ""),
-        (Always, vec![(Ctrl('l'), Action::Redraw)], "", "draw the screen anew", ""),
-    ]
-}
-
-fn letters() -> Vec<(Key, Action)> {
-    parameters::in_order().map(|parameter| (Key::Char(parameters::letter(parameter)), choose(parameter))).collect()
-}
-
-const fn choose(parameter: Parameter) -> Action {
-    Action::Choose(parameter)
-}
-
-fn numbers() -> Vec<(Key, Action)> {
-    ('1'..).zip(View::ALL).map(|(digit, view)| (Key::Char(digit), Action::Show(view))).collect()
-}
-
-fn names(keys: &[(Key, Action)]) -> String {
-    keys.iter().map(|(key, _)| key.name()).collect::<Vec<_>>().join(" ")
 }
 
 /// The contexts that hold now, the nearest first.
@@ -299,11 +169,18 @@ pub fn action(state: &State, key: Key) -> Option<Action> {
 #[must_use]
 pub fn hints(state: &State) -> Vec<(String, &'static str)> {
     let bindings = bindings();
-    let of = |context: Context| {
-        let here = bindings.iter().filter(move |binding| binding.context == context);
-        here.filter_map(|binding| binding.hint.map(|hint| (short(binding), hint))).collect::<Vec<_>>()
-    };
-    contexts(state).into_iter().flat_map(of).collect()
+    let mut taken = HashSet::new();
+    let mut hints = Vec::new();
+    for context in contexts(state) {
+        for binding in bindings.iter().filter(|binding| binding.context == context) {
+            // A key that means something else here is not announced with its general meaning.
+            let fresh = binding.keys.iter().filter(|(key, _)| taken.insert(*key)).count();
+            if let Some(hint) = binding.hint.filter(|_| fresh == binding.keys.len()) {
+                hints.push((short(binding), hint));
+            }
+        }
+    }
+    hints
 }
 
 /// The label without its second spelling.
@@ -311,6 +188,10 @@ fn short(binding: &Binding) -> String {
     match binding.keys.first() {
         Some((Key::Left | Key::Up, _)) => binding.label.replace(" PgUp PgDn", "").replace(' ', ""),
         _ if binding.label.contains('–') => binding.label.replace(' ', ""),
+        // Keys of punctuation that go two ways are shown as a pair.
+        Some((Key::Char(a), _)) if a.is_ascii_punctuation() && matches!(binding.keys[..], [_, (Key::Char(_), _)]) => {
+            binding.keys.iter().map(|(key, _)| key.name()).collect()
+        }
         Some((key, _)) => key.name(),
         None => binding.label.clone(),
     }
@@ -322,5 +203,6 @@ pub fn lines() -> usize {
     bindings().len() + 2 * Context::ALL.len()
 }
 
+mod table;
 #[cfg(test)]
 mod tests;

@@ -2,8 +2,8 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use super::{Entry, History, ModelList, parameters};
-use crate::query::{Answer, Parameter, Part, Settings, Stage};
+use super::{Entry, History, ModelList, Replies, Why, parameters};
+use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
 
 /// A page of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -21,12 +21,24 @@ pub enum View {
     Pipeline,
     /// Every model and what is wrong with it.
     Models,
+    /// Which classes are taken for which.
+    Confusion,
+    /// Why one model is put where it is.
+    Neighbours,
 }
 
 impl View {
     /// All of them, in the order of their keys.
-    pub const ALL: [Self; 6] =
-        [Self::Overview, Self::Curves, Self::Tables, Self::Selection, Self::Pipeline, Self::Models];
+    pub const ALL: [Self; 8] = [
+        Self::Overview,
+        Self::Curves,
+        Self::Tables,
+        Self::Selection,
+        Self::Pipeline,
+        Self::Models,
+        Self::Confusion,
+        Self::Neighbours,
+    ];
 
     /// Its name on the tab.
     #[must_use]
@@ -38,6 +50,21 @@ impl View {
             Self::Selection => "Selection",
             Self::Pipeline => "Pipeline",
             Self::Models => "Models",
+            Self::Confusion => "Confusion",
+            Self::Neighbours => "Neighbours",
+        }
+    }
+
+    /// A name of at most six letters for narrow screens.
+    #[must_use]
+    pub const fn brief(self) -> &'static str {
+        match self {
+            Self::Overview => "Main",
+            Self::Selection => "Bands",
+            Self::Pipeline => "Runs",
+            Self::Confusion => "Errors",
+            Self::Neighbours => "Near",
+            other => other.name(),
         }
     }
 
@@ -59,6 +86,8 @@ pub enum Figure {
     Marks,
     /// The way that hill climbing took.
     Climb,
+    /// Where the class's models keep together.
+    Shared,
 }
 
 /// A line for the user, shown until the next key, or only until the next answer.
@@ -101,6 +130,14 @@ pub struct State {
     pub figure: Figure,
     /// The list of models.
     pub models: ModelList,
+    /// What the explaining views look at.
+    pub why: Why,
+    /// What was looked at before: the views and their models, the newest last.
+    pub trail: Vec<(View, Option<usize>)>,
+    /// What the engine was asked for the view.
+    pub asked: Vec<Question>,
+    /// What it answered.
+    pub replies: Replies,
     /// Lines by which the view is scrolled down; a view stops at its own end.
     pub scroll: usize,
     /// Solving was stopped by the user.
@@ -131,6 +168,10 @@ impl State {
             logarithmic: true,
             figure: Figure::default(),
             models: ModelList::default(),
+            why: Why::default(),
+            trail: Vec::new(),
+            asked: Vec::new(),
+            replies: Replies::default(),
             scroll: 0,
             stopped: false,
             notice: None,
@@ -170,7 +211,6 @@ impl State {
     /// The model that the list looks at.
     #[must_use]
     pub fn model(&self) -> Option<usize> {
-        let listed = self.models.listed(&self.answer);
-        listed.get(self.models.at.min(listed.len().saturating_sub(1))).copied()
+        self.models.model(&self.answer)
     }
 }

@@ -2,12 +2,26 @@
 
 use std::sync::Arc;
 
-use super::{Action, Command, Effect, Entry, Figure, Leave, Notice, State, View, parameters};
+use super::{Action, Command, Effect, Entry, Figure, Leave, Notice, State, View, asking, explore, parameters};
 use crate::query::{Answer, Parameter, Settings};
 
 /// Lets an action happen. Returns what must now happen outside; never waits.
 pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
-    if !matches!(action, Action::Answer(_) | Action::Resize(..) | Action::Report(_) | Action::Fatal(_)) {
+    let mut effects = happen(state, action);
+    // What the screen wants to know follows from what it shows.
+    let questions = asking::questions(state);
+    if questions != state.asked {
+        state.asked.clone_from(&questions);
+        effects.push(Effect::Send(Command::Ask(questions)));
+    }
+    effects
+}
+
+fn happen(state: &mut State, action: Action) -> Vec<Effect> {
+    if !matches!(
+        action,
+        Action::Answer(_) | Action::Reply(_) | Action::Resize(..) | Action::Report(_) | Action::Fatal(_)
+    ) {
         state.notice = None;
     }
     match action {
@@ -32,6 +46,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Redo => return travel(state, false),
         Action::Commit => return commit(state),
         Action::Answer(answer) => receive(state, answer),
+        Action::Reply(reply) => state.replies.take(reply),
         Action::Fatal(reason) => state.fatal = Some(reason),
         Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
@@ -58,7 +73,8 @@ fn look(state: &mut State, action: &Action) {
             state.figure = match state.figure {
                 Figure::Map => Figure::Marks,
                 Figure::Marks => Figure::Climb,
-                Figure::Climb => Figure::Map,
+                Figure::Climb => Figure::Shared,
+                Figure::Shared => Figure::Map,
             }
         }
         Action::Compare => {
@@ -68,18 +84,17 @@ fn look(state: &mut State, action: &Action) {
             }
         }
         Action::CompareNone => state.compared.clear(),
-        Action::CycleFilter => state.models.cycle(&state.answer),
         Action::Up => step(state, -1),
         Action::Down => step(state, 1),
         Action::PageUp => page(state, -1),
         Action::PageDown => page(state, 1),
         Action::First => scroll(state, -(isize::MAX / 2)),
         Action::Last => scroll(state, isize::MAX / 2),
-        _ => {}
+        other => explore::look(state, other),
     }
 }
 
-fn say(state: &mut State, text: impl Into<String>) {
+pub(super) fn say(state: &mut State, text: impl Into<String>) {
     state.notice = Some(Notice { text: text.into(), bad: false, brief: false });
 }
 
@@ -91,7 +106,7 @@ fn toggle_solving(state: &mut State) -> Vec<Effect> {
     vec![Effect::Send(if state.stopped { Command::Stop } else { Command::Resume })]
 }
 
-fn show(state: &mut State, view: View) {
+pub(super) fn show(state: &mut State, view: View) {
     if state.view != view {
         state.view = view;
         state.scroll = 0;
@@ -107,7 +122,7 @@ fn choose(state: &mut State, parameter: Parameter) {
 
 /// One line up or down: in the help, in the list of models, else in the panel of parameters.
 fn step(state: &mut State, by: isize) {
-    if state.help.is_some() || state.view == View::Models {
+    if state.help.is_some() || matches!(state.view, View::Models | View::Neighbours) {
         scroll(state, by);
         return;
     }
@@ -127,6 +142,8 @@ fn scroll(state: &mut State, by: isize) {
     } else if state.view == View::Models {
         let answer = Arc::clone(&state.answer);
         state.models.shift(by, &answer);
+    } else if state.view == View::Neighbours {
+        explore::shift_neighbour(state, by);
     } else {
         state.scroll = state.scroll.saturating_add_signed(by).min(furthest(state));
     }
@@ -138,7 +155,7 @@ fn furthest(state: &State) -> usize {
         View::Tables => state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| t.rows.len() + 4).sum(),
         View::Pipeline => state.answer.warnings.len(),
         View::Selection => state.answer.marks.value.iter().flat_map(|m| m.iter()).map(Vec::len).max().unwrap_or(0),
-        View::Overview | View::Curves | View::Models => 0,
+        View::Overview | View::Curves | View::Models | View::Confusion | View::Neighbours => 0,
     }
 }
 
@@ -245,6 +262,11 @@ fn receive(state: &mut State, answer: Arc<Answer>) {
     // An answer that was overtaken on its way says nothing new.
     if answer.serial < state.answer.serial {
         return;
+    }
+    // Answers name models by their place, which must still be theirs.
+    let places = |answer: &Answer| answer.models.iter().map(|model| model.path.clone()).collect::<Vec<_>>();
+    if state.answer.models.len() != answer.models.len() || places(&state.answer) != places(&answer) {
+        explore::forget(state);
     }
     state.answer = answer;
     state.notice.take_if(|notice| notice.brief);

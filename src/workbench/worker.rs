@@ -14,7 +14,7 @@ use std::{
 use super::{Command, Update};
 use crate::{
     dataset::{self, DataSet},
-    query::{Config, Host, Members, News, Piece, Settings},
+    query::{Config, Host, Members, News, Piece, Question, Reply, Settings},
     store::Store,
 };
 
@@ -45,6 +45,8 @@ enum Message {
     Piece(u64, Piece),
     /// The study of that number is over, finished or not.
     Over(u64),
+    /// The answer to a question of the asking of that number.
+    Reply(u64, Reply),
 }
 
 /// The worker. Dropping it asks the thread to end and does not wait for a long computation.
@@ -118,6 +120,9 @@ struct Desk<'a> {
     /// Not before this is a study of more models begun, unless they are all there.
     next_study: Instant,
     studies: u64,
+    /// What the screen wants to know, and how often it was asked.
+    questions: Vec<Question>,
+    askings: u64,
     publish_at: Option<Instant>,
     saved: bool,
     /// Looks at the folder that are left for files that were in the middle of a change, and when the next one is due.
@@ -146,6 +151,8 @@ impl<'a> Desk<'a> {
             studied: None,
             next_study: now + FIRST_STUDY,
             studies: 0,
+            questions: Vec::new(),
+            askings: 0,
             publish_at: Some(now),
             saved: false,
             looks: LOOKS,
@@ -166,10 +173,11 @@ impl<'a> Desk<'a> {
                     Err(_) => return,
                 },
             };
-            let mut newest = None;
+            let (mut newest, mut asked) = (None, None);
             for message in first.into_iter().chain(inbox.try_iter()) {
                 match message {
                     Message::Command(Command::Set(settings)) => newest = Some(settings),
+                    Message::Command(Command::Ask(questions)) => asked = Some(questions),
                     Message::Command(Command::Quit) => {
                         self.host.save();
                         return;
@@ -184,6 +192,7 @@ impl<'a> Desk<'a> {
                     }
                     Message::Piece(number, piece) => self.learn(number, piece),
                     Message::Over(number) => self.over(number),
+                    Message::Reply(number, reply) => self.reply(number, reply),
                 }
             }
             if let Some(settings) = newest
@@ -193,7 +202,13 @@ impl<'a> Desk<'a> {
                 self.publish_within(GRACE);
             }
             self.look_again();
-            self.begin_study();
+            let begun = self.begin_study();
+            if let Some(questions) = asked {
+                self.questions = questions;
+                self.ask();
+            } else if begun {
+                self.ask();
+            }
             if self.publish_at.is_some_and(|at| at <= Instant::now()) {
                 self.publish_at = None;
                 (self.notify)(Update::Answer(Arc::new(self.host.answer())));
@@ -216,7 +231,7 @@ impl<'a> Desk<'a> {
             },
             Command::Stop => self.host.stop(),
             Command::Resume => self.host.resume(),
-            Command::Set(_) | Command::Quit => {}
+            Command::Set(_) | Command::Ask(_) | Command::Quit => {}
         }
         self.publish_within(GRACE);
     }
@@ -239,13 +254,14 @@ impl<'a> Desk<'a> {
         self.next_study = Instant::now() + FIRST_STUDY;
     }
 
-    fn begin_study(&mut self) {
+    /// Begins the study if it is due. Returns whether it did.
+    fn begin_study(&mut self) -> bool {
         if self.study.is_some() || (Instant::now() < self.next_study && !self.host.complete()) {
-            return;
+            return false;
         }
-        let Some(members) = self.host.members() else { return };
+        let Some(members) = self.host.members() else { return false };
         if self.studied.as_ref() == Some(&members) {
-            return;
+            return false;
         }
         self.studies += 1;
         let number = self.studies;
@@ -261,6 +277,44 @@ impl<'a> Desk<'a> {
         match begun {
             Ok(_) => self.study = Some((number, members, Instant::now())),
             Err(error) => self.host.warn(&format!("the system has no thread to give: {error}")),
+        }
+        self.study.is_some()
+    }
+
+    /// Asks what the screen wants to know, each question on a thread of its own. What is asked about the study waits
+    /// until there is one.
+    fn ask(&mut self) {
+        self.askings += 1;
+        let number = self.askings;
+        let members = self.study.as_ref().map(|(_, members, _)| members).or(self.studied.as_ref());
+        for question in &self.questions {
+            let outbox = self.outbox.clone();
+            let tell = move |reply: Reply| {
+                let _ = outbox.send(Message::Reply(number, reply));
+            };
+            let thread = std::thread::Builder::new().name("question".into());
+            let begun = if let Question::Shape(model) = question {
+                let Some(looking) = self.host.look(*model) else { continue };
+                thread.spawn(move || tell(looking.answer()))
+            } else {
+                let Some(members) = members.cloned() else { continue };
+                let asking = self.host.ask(members, question.clone());
+                thread.spawn(move || {
+                    if let Some(reply) = asking.answer() {
+                        tell(reply);
+                    }
+                })
+            };
+            if let Err(error) = begun {
+                self.host.warn(&format!("the system has no thread to give: {error}"));
+            }
+        }
+    }
+
+    /// Passes an answer on, unless the screen asks for something else by now.
+    fn reply(&self, number: u64, reply: Reply) {
+        if number == self.askings {
+            (self.notify)(Update::Reply(Arc::new(reply)));
         }
     }
 

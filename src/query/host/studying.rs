@@ -9,8 +9,9 @@ use super::{Cancelled, Host, Shown};
 use crate::{
     dataset::Role,
     query::{
-        Answer, Part,
+        Answer, Part, Question,
         inquiry::{Inquiry, Members, Piece},
+        question::{Asking, Looking, ModelAt},
     },
     selection::Cost,
     watch::Watch,
@@ -36,6 +37,17 @@ impl Host {
     /// Prepares the study of `members` for another thread.
     pub(crate) fn inquire(&self, members: Members) -> Inquiry {
         Inquiry::new(self.database.clone(), members)
+    }
+
+    /// Prepares a question about `members` for another thread.
+    pub(crate) fn ask(&self, members: Members, question: Question) -> Asking {
+        Asking::new(self.database.clone(), members, self.settings.clone(), question)
+    }
+
+    /// Prepares the reading of a model's surface on another thread. None when there is no such model.
+    pub(crate) fn look(&self, model: usize) -> Option<Looking> {
+        let file = ModelAt::of(&self.database, self.rows.get(model)?.file);
+        Some(Looking { library: self.library.clone(), file, settings: self.settings.clone(), model })
     }
 
     /// Takes in a value of the study of `members`.

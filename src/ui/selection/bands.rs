@@ -56,7 +56,7 @@ pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
 }
 
 /// What the vertical axis shows.
-pub(super) const fn unit(normalisation: Normalisation) -> &'static str {
+pub(in crate::ui) const fn unit(normalisation: Normalisation) -> &'static str {
     match normalisation {
         Normalisation::None => "λ",
         Normalisation::Area => "λ·area",

@@ -4,7 +4,7 @@ use std::{collections::HashSet, mem};
 
 use super::*;
 use crate::{
-    query::Settings,
+    query::{Parameter, Settings},
     workbench::{Entry, update},
 };
 
@@ -22,12 +22,16 @@ fn moods() -> Vec<State> {
 
 #[test]
 fn no_key_means_two_things_in_one_place() {
+    // A view with a cursor of its own moves it with the arrows and opens what is under it.
+    let cursor = [Key::Up, Key::Down, Key::Left, Key::Right, Key::Enter];
     for state in moods() {
         let contexts = contexts(&state);
         let mut seen = HashSet::new();
-        for binding in bindings().iter().filter(|binding| contexts.contains(&binding.context)) {
-            for (key, _) in &binding.keys {
-                assert!(seen.insert(*key), "{} has two meanings in {contexts:?}", key.name());
+        for context in &contexts {
+            let mut here = HashSet::new();
+            for (key, _) in bindings().iter().filter(|b| b.context == *context).flat_map(|b| &b.keys) {
+                assert!(here.insert(*key), "{} has two meanings in {context:?}", key.name());
+                assert!(seen.insert(*key) || cursor.contains(key), "{} has two in {contexts:?}", key.name());
             }
         }
     }
@@ -40,8 +44,10 @@ fn every_binding_is_reached_by_its_keys() {
         let contexts = contexts(&state);
         for (row, binding) in bindings().iter().enumerate().filter(|(_, b)| contexts.contains(&b.context)) {
             for (key, bound) in &binding.keys {
-                assert_eq!(action(&state, *key).as_ref(), Some(bound), "{}", key.name());
-                reached.insert(row);
+                // What a nearer context has taken is reached elsewhere.
+                if action(&state, *key).as_ref() == Some(bound) {
+                    reached.insert(row);
+                }
             }
         }
     }
@@ -82,6 +88,16 @@ fn every_action_of_a_key_is_bound() {
         Action::Compare,
         Action::CompareNone,
         Action::CycleFilter,
+        Action::CycleSort,
+        Action::ListAll,
+        Action::TurnMethod(1),
+        Action::CycleSide,
+        Action::Cell(1, 0),
+        Action::NextConfusion,
+        Action::ToggleOverlay,
+        Action::Open,
+        Action::Back,
+        Action::Step(1),
         Action::Erase,
         Action::EraseAll,
         Action::Left,
@@ -138,7 +154,7 @@ fn hints_come_from_the_table() {
         hints(state).into_iter().map(|(keys, word)| format!("{keys} {word}")).collect::<Vec<_>>().join(" · ")
     };
     let overview = line(&state(View::Overview));
-    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–6 view · ? help · q quit");
-    assert_eq!(line(&moods()[6]), "↑↓ scroll · Esc close");
-    assert_eq!(line(&moods()[7]), "Enter take it · Esc leave it");
+    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–8 view · ? help · q quit");
+    assert_eq!(line(&moods()[8]), "↑↓ scroll · Esc close");
+    assert_eq!(line(&moods()[9]), "Enter take it · Esc leave it");
 }

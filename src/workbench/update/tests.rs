@@ -207,6 +207,8 @@ fn the_list_of_models_moves_and_filters() {
     assert_eq!(state.model(), Some(1), "it keeps looking at the same model");
     play(&mut state, [Action::CycleFilter]);
     assert_eq!(state.model(), Some(2));
+    play(&mut state, [Action::CycleFilter]);
+    assert_eq!(state.models.filter, Filter::Working);
     play(&mut state, [Action::CycleFilter, Action::Last, Action::Down]);
     assert_eq!(state.model(), Some(3));
     play(&mut state, [Action::First, Action::Up]);
@@ -287,7 +289,7 @@ fn the_help_scrolls_within_its_lines() {
 fn views_go_round() {
     let mut state = opened();
     update(&mut state, Action::PreviousView);
-    assert_eq!(state.view, View::Models);
+    assert_eq!(state.view, View::Neighbours);
     update(&mut state, Action::NextView);
     assert_eq!(state.view, View::Overview);
 }

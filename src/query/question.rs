@@ -1,0 +1,161 @@
+//! What a view wants to know beyond the study: asked for only while the view is shown, memoised like all else.
+
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    sync::Arc,
+};
+
+use super::{
+    Settings,
+    db::{Cohort, Database, ModelFile},
+    inquiry::Members,
+    library::{self, Failure, FileAt, Library},
+    reasons,
+    stamp::Stamp,
+};
+use crate::{
+    dataset::Role,
+    mesh::{Format, Mesh},
+    study::{
+        Method,
+        why::{Decisions, Neighbours, Shared, Votes},
+    },
+};
+
+/// Something that a view wants to know. Models are named by their place in [`Answer::models`](super::Answer::models).
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Question {
+    /// What a method decides for every model.
+    Decisions(Method),
+    /// Why a method decides for a model as it does.
+    Reasons {
+        /// The method.
+        method: Method,
+        /// The model.
+        model: usize,
+    },
+    /// Where the models of a class, an index, keep together.
+    Shared(usize),
+    /// The surface of a model, in the canonical form that its eigenfunctions live on.
+    Shape(usize),
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Finding {
+    /// Of [`Question::Decisions`].
+    Decisions(Arc<Decisions>),
+    /// Of [`Question::Reasons`] for the methods that compare models.
+    Neighbours(Arc<Neighbours>),
+    /// Of [`Question::Reasons`] for AdaBoost.
+    Votes(Arc<Votes>),
+    /// Of [`Question::Shared`].
+    Shared(Arc<Shared>),
+    /// Of [`Question::Shape`].
+    Shape(Arc<Mesh>),
+}
+
+/// The answer to a question.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reply {
+    /// The question.
+    pub question: Question,
+    /// The parameters it was answered for.
+    pub settings: Settings,
+    /// For every row of the finding (training models first, then query models) the place of its model.
+    pub places: Arc<Vec<usize>>,
+    /// What was found, or why there is nothing.
+    pub finding: Result<Finding, Arc<str>>,
+}
+
+/// A question that can be answered on another thread while the host goes on.
+///
+/// It holds the database: the host's next write waits until it has noticed and is dropped.
+pub(crate) struct Asking {
+    database: Database,
+    members: Members,
+    settings: Settings,
+    question: Question,
+}
+
+impl Asking {
+    pub(crate) const fn new(database: Database, members: Members, settings: Settings, question: Question) -> Self {
+        Self { database, members, settings, question }
+    }
+
+    /// Answers; none when the host wants to write meanwhile.
+    pub(crate) fn answer(self) -> Option<Reply> {
+        let Self { database, members, settings, question } = self;
+        let rows = rows(&database, &members);
+        let asked = catch_unwind(AssertUnwindSafe(|| {
+            salsa::Cancelled::catch(AssertUnwindSafe(|| find(&database, &members, &rows, &question)))
+        }));
+        let finding = match asked {
+            Ok(Ok(found)) => found,
+            Ok(Err(_)) => return None,
+            Err(_) => Err("internal error in the study, please report it".into()),
+        };
+        let places = rows.iter().map(|&member| members.places[member]).collect();
+        Some(Reply { question, settings, places: Arc::new(places), finding })
+    }
+}
+
+/// The members in the order of a sample's rows: training models first, then query models.
+fn rows(db: &Database, members: &Members) -> Vec<usize> {
+    let side = |role: Role| members.files.iter().enumerate().filter(move |(_, file)| file.role(db) == role);
+    side(Role::Train).chain(side(Role::Query)).map(|(member, _)| member).collect()
+}
+
+fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -> Result<Finding, Failure> {
+    let cohort = Cohort::new(db, Arc::clone(&members.files), members.reach);
+    let row = |model: usize| {
+        let row = rows.iter().position(|&member| members.places[member] == model);
+        row.ok_or_else(|| Failure::from("the model takes no part"))
+    };
+    match *question {
+        Question::Decisions(method) => reasons::decision_rows(db, cohort, method).map(Finding::Decisions),
+        Question::Reasons { method: Method::Boost, model } => {
+            reasons::vote_rows(db, cohort, row(model)?).map(Finding::Votes)
+        }
+        Question::Reasons { method, model } => {
+            reasons::neighbour_rows(db, cohort, method, row(model)?).map(Finding::Neighbours)
+        }
+        Question::Shared(class) => reasons::shared_rows(db, cohort, class).map(Finding::Shared),
+        Question::Shape(_) => Err("a shape is read from its file".into()),
+    }
+}
+
+/// A surface to be read on another thread.
+pub(crate) struct Looking {
+    pub(crate) library: Library,
+    pub(crate) file: ModelAt,
+    pub(crate) settings: Settings,
+    pub(crate) model: usize,
+}
+
+/// Where a model's mesh is.
+pub(crate) struct ModelAt {
+    pub(crate) path: std::path::PathBuf,
+    pub(crate) format: Format,
+    pub(crate) stamp: Option<Stamp>,
+}
+
+impl ModelAt {
+    pub(crate) fn of(db: &Database, file: ModelFile) -> Self {
+        Self { path: file.path(db).clone(), format: file.format(db), stamp: file.stamp(db) }
+    }
+}
+
+impl Looking {
+    /// Reads the mesh.
+    pub(crate) fn answer(self) -> Reply {
+        let Self { library, file, settings, model } = self;
+        let read = || {
+            let stamp = file.stamp.ok_or_else(|| Failure::from("the file is not there"))?;
+            let content = library.content(&file.path, stamp)?;
+            library::canonical(FileAt { path: &file.path, format: file.format, content })
+        };
+        let finding = read().map(|mesh| Finding::Shape(Arc::new(mesh)));
+        Reply { question: Question::Shape(model), settings, places: Arc::default(), finding }
+    }
+}

@@ -1,0 +1,164 @@
+//! What the view shown wants to know beyond the study, and what was answered.
+//!
+//! [`questions`] follows from the state alone: whoever changes the state need not think of it. What no view shows is
+//! never asked for.
+
+use std::sync::Arc;
+
+use super::{Figure, State, View, parameters};
+use crate::{
+    query::{Finding, Parameter, Question, Reply, Stage},
+    study::Method,
+};
+
+/// Answers kept: turning back to a model or a method that was just shown shows it at once.
+const KEPT: usize = 24;
+
+/// From so many columns on the selection view shows all its figures at once.
+pub const ALL_FIGURES: u16 = 150;
+
+/// The newest answers, the newest last.
+#[derive(Debug, Clone, Default)]
+pub struct Replies(Vec<Arc<Reply>>);
+
+impl Replies {
+    /// Takes in an answer; an older one to the same question goes.
+    pub fn take(&mut self, reply: Arc<Reply>) {
+        self.0.retain(|kept| kept.question != reply.question);
+        if self.0.len() == KEPT {
+            self.0.remove(0);
+        }
+        self.0.push(reply);
+    }
+
+    /// The answer to a question, if there is one.
+    #[must_use]
+    pub fn find(&self, question: &Question) -> Option<&Arc<Reply>> {
+        self.0.iter().rev().find(|reply| reply.question == *question)
+    }
+
+    /// Forgets everything: the models have other places now.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+/// Everything that the screen as it is wants to know.
+#[must_use]
+pub fn questions(state: &State) -> Vec<Question> {
+    let method = state.why.method;
+    match state.view {
+        View::Selection if state.figure == Figure::Shared || state.size.0 >= ALL_FIGURES => {
+            vec![Question::Shared(state.settings.class)]
+        }
+        View::Confusion => vec![Question::Decisions(method)],
+        View::Neighbours => state.model().map(|model| Question::Reasons { method, model }).into_iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// What a view can say of a question.
+#[derive(Debug, Clone, Copy)]
+pub enum Answered<'a> {
+    /// It was asked, and the answer is on its way.
+    Awaited,
+    /// There is nothing, and why.
+    Nothing(&'a str),
+    /// What was found; true while it belongs to other parameters or fewer models.
+    Found(&'a Finding, &'a [usize], bool),
+}
+
+impl State {
+    /// What is known of a question.
+    #[must_use]
+    pub fn answered(&self, question: &Question) -> Answered<'_> {
+        match self.replies.find(question) {
+            None => Answered::Awaited,
+            Some(reply) => match &reply.finding {
+                Ok(finding) => Answered::Found(finding, &reply.places, self.outdated(reply)),
+                Err(_) if self.outdated(reply) => Answered::Awaited,
+                Err(reason) => Answered::Nothing(reason),
+            },
+        }
+    }
+
+    /// True while an answer belongs to other parameters than those on the screen, or to other models than the study.
+    #[must_use]
+    pub fn outdated(&self, reply: &Reply) -> bool {
+        let matters = |parameter: Parameter| {
+            let stage = match reply.question {
+                Question::Shape(_) => return false,
+                Question::Shared(_) => Stage::Features,
+                Question::Decisions(method) | Question::Reasons { method, .. } => {
+                    if method == Method::FirstK && parameter == Parameter::K {
+                        return true;
+                    }
+                    stage(method)
+                }
+            };
+            parameters::invalidates(parameter).contains(&stage)
+        };
+        let differs = |parameter: Parameter| self.settings.get(parameter) != reply.settings.get(parameter);
+        Parameter::ALL.into_iter().any(|parameter| differs(parameter) && matters(parameter))
+            || (!matches!(reply.question, Question::Shape(_)) && reply.places.len() != self.answer.members.len())
+    }
+}
+
+/// The stage that a method's decisions come from.
+#[must_use]
+pub const fn stage(method: Method) -> Stage {
+    match method {
+        Method::FirstK | Method::BestK => Stage::FirstK,
+        Method::ClimbError => Stage::ClimbError,
+        Method::ClimbAdr => Stage::ClimbAdr,
+        Method::Boost => Stage::Boost,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::query::Settings;
+
+    fn reply(question: Question) -> Arc<Reply> {
+        let settings = Settings::default();
+        Arc::new(Reply { question, settings, places: Arc::default(), finding: Err("nothing".into()) })
+    }
+
+    #[test]
+    fn the_newest_answers_are_kept() {
+        let mut replies = Replies::default();
+        for model in 0..2 * KEPT {
+            replies.take(reply(Question::Shape(model)));
+            replies.take(reply(Question::Shape(model)));
+        }
+        assert!(replies.find(&Question::Shape(2 * KEPT - 1)).is_some());
+        assert!(replies.find(&Question::Shape(KEPT)).is_some());
+        assert!(replies.find(&Question::Shape(KEPT - 1)).is_none());
+    }
+
+    #[test]
+    fn an_answer_is_outdated_by_what_it_depends_on() {
+        let mut state = State::new("", Settings::default());
+        let outdated = |state: &State, question| state.outdated(&reply(question));
+        state.settings.k = 7;
+        assert!(outdated(&state, Question::Decisions(Method::FirstK)));
+        assert!(!outdated(&state, Question::Decisions(Method::BestK)));
+        state.settings = Settings { rounds: 7, ..Settings::default() };
+        assert!(outdated(&state, Question::Reasons { method: Method::Boost, model: 0 }));
+        assert!(!outdated(&state, Question::Reasons { method: Method::ClimbAdr, model: 0 }));
+        state.settings = Settings { kmax: 7, ..Settings::default() };
+        assert!(outdated(&state, Question::Shared(0)));
+        assert!(!outdated(&state, Question::Shape(0)));
+    }
+
+    #[test]
+    fn only_what_is_shown_is_asked_for() {
+        let mut state = State::new("", Settings::default());
+        for view in View::ALL {
+            state.view = view;
+            let none = !matches!(view, View::Confusion);
+            assert_eq!(questions(&state).is_empty(), none, "{view:?}");
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Going from a figure to the models behind it, and back.
+
+use super::{Action, Answered, Only, State, View, Why, update, why::Matrix};
+use crate::query::{Finding, Question};
+
+/// So many steps back are remembered.
+const TRAIL: usize = 100;
+
+/// What only the views that list and explain understand.
+pub(super) fn look(state: &mut State, action: &Action) {
+    let classes = state.answer.classes.len();
+    match action {
+        Action::CycleFilter => change(state, |list| list.filter = list.filter.next()),
+        Action::CycleSort => change(state, |list| list.sort = list.sort.next()),
+        Action::ListAll => {
+            change(state, |list| (list.filter, list.only, list.needle) = Default::default());
+        }
+        Action::TurnMethod(by) => {
+            state.why.method = state.why.method.turned(*by);
+            state.why.neighbour = 0;
+        }
+        Action::CycleSide => state.why.side = state.why.side.next(),
+        Action::ToggleOverlay => state.why.overlaid = !state.why.overlaid,
+        Action::Cell(down, right) => state.why.shift(*down, *right, classes),
+        Action::NextConfusion => next_confusion(state),
+        Action::Open => open(state),
+        Action::Back => back(state),
+        Action::Step(by) => {
+            let answer = std::sync::Arc::clone(&state.answer);
+            state.models.shift(*by, &answer);
+            state.why.neighbour = 0;
+        }
+        _ => {}
+    }
+}
+
+fn change(state: &mut State, change: impl FnOnce(&mut super::ModelList)) {
+    let answer = std::sync::Arc::clone(&state.answer);
+    state.models.change(&answer, change);
+}
+
+/// Forgets everything that names models by their place.
+pub(super) fn forget(state: &mut State) {
+    state.replies.clear();
+    state.trail.clear();
+    state.models.only = None;
+    state.why = Why { neighbour: 0, ..state.why };
+    // The same questions mean other models now.
+    state.asked.clear();
+}
+
+/// Remembers the view and its model, to come back to.
+fn remember(state: &mut State) {
+    if state.trail.len() == TRAIL {
+        state.trail.remove(0);
+    }
+    let here = (state.view, state.model());
+    state.trail.push(here);
+}
+
+fn back(state: &mut State) {
+    let Some((view, model)) = state.trail.pop() else { return };
+    if let Some(model) = model {
+        let answer = std::sync::Arc::clone(&state.answer);
+        state.models.look_at(model, &answer);
+    }
+    state.why.neighbour = 0;
+    update::show(state, view);
+}
+
+/// The decisions shown, with the place of the model of each.
+fn decisions(state: &State) -> Option<(&crate::study::why::Decisions, &[usize])> {
+    match state.answered(&Question::Decisions(state.why.method)) {
+        Answered::Found(Finding::Decisions(decisions), places, _) => Some((decisions, places)),
+        _ => None,
+    }
+}
+
+fn next_confusion(state: &mut State) {
+    let Some((decisions, places)) = decisions(state) else { return };
+    let worst = Matrix::new(state.why.side, &state.answer, decisions, places).worst;
+    let at = worst.iter().position(|&(truth, decided, _)| (truth, decided) == state.why.cell);
+    let next = at.map_or(0, |at| at + 1) % worst.len().max(1);
+    if let Some(&(truth, decided, _)) = worst.get(next) {
+        state.why.cell = (truth, decided);
+    }
+}
+
+fn open(state: &mut State) {
+    match state.view {
+        View::Confusion => open_cell(state),
+        View::Models if state.model().is_some() => {
+            remember(state);
+            state.why.neighbour = 0;
+            update::show(state, View::Neighbours);
+        }
+        View::Neighbours => open_neighbour(state),
+        _ => {}
+    }
+}
+
+fn open_cell(state: &mut State) {
+    let Some((decisions, places)) = decisions(state) else { return };
+    let models = state.why.models(&state.answer, decisions, places);
+    if models.is_empty() {
+        update::say(state, "no models in this cell");
+        return;
+    }
+    let class = |class: usize| state.answer.classes.get(class).map_or("", String::as_str);
+    let (truth, decided) = state.why.cell;
+    let label = if truth == decided {
+        format!("{} recognised by {}", class(truth), state.why.method.name())
+    } else {
+        format!("{} taken for {} by {}", class(truth), class(decided), state.why.method.name())
+    };
+    remember(state);
+    let first = models.first().copied();
+    change(state, |list| {
+        (list.filter, list.needle) = Default::default();
+        list.only = Some(Only { label, models });
+    });
+    if let Some(first) = first {
+        let answer = std::sync::Arc::clone(&state.answer);
+        state.models.look_at(first, &answer);
+    }
+    update::show(state, View::Models);
+}
+
+/// The neighbours shown: how many there are, and the place of the model of each.
+pub(super) fn neighbours(state: &State) -> Option<(usize, Vec<usize>)> {
+    let model = state.model()?;
+    let Answered::Found(finding, places, _) = state.answered(&Question::Reasons { method: state.why.method, model })
+    else {
+        return None;
+    };
+    match finding {
+        Finding::Neighbours(found) => {
+            let models: Vec<usize> = found.found.iter().filter_map(|n| places.get(n.model).copied()).collect();
+            Some((models.len(), models))
+        }
+        Finding::Votes(votes) => Some((votes.votes.len(), Vec::new())),
+        _ => None,
+    }
+}
+
+pub(super) fn shift_neighbour(state: &mut State, by: isize) {
+    let last = neighbours(state).map_or(0, |(count, _)| count.saturating_sub(1));
+    state.why.neighbour = state.why.neighbour.min(last).saturating_add_signed(by).min(last);
+}
+
+fn open_neighbour(state: &mut State) {
+    let Some((_, models)) = neighbours(state) else { return };
+    let Some(&model) = models.get(state.why.neighbour.min(models.len().saturating_sub(1))) else { return };
+    remember(state);
+    let answer = std::sync::Arc::clone(&state.answer);
+    state.models.look_at(model, &answer);
+    state.why.neighbour = 0;
+}

@@ -1,0 +1,87 @@
+//! The engine's part in the tests of the screen: answers what a state asks, from the sample's own spectra.
+
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use eigenselect::{
+    dataset::Role,
+    metrics::{Distance, Features, Sample},
+    query::{Answer, Finding, Question, Reply},
+    spectrum::Normalisation,
+    study::{Method, why},
+    workbench::{Action, State, update},
+};
+
+/// The members' features, and the place of each row's model.
+fn sample(answer: &Answer) -> (Arc<Sample>, Arc<Vec<usize>>) {
+    let kmax = answer.settings.kmax;
+    let side = |role: Role| {
+        let of = |&place: &usize| answer.models.get(place).is_some_and(|model| model.role == role);
+        answer.members.iter().copied().filter(of).collect::<Vec<_>>()
+    };
+    let (train, query) = (side(Role::Train), side(Role::Query));
+    let features = |places: &[usize]| {
+        Features::from_rows(places.iter().map(|&place| {
+            let model = &answer.models[place];
+            Normalisation::Max.apply(model.eigenvalues.as_deref().unwrap(), model.measure.unwrap(), kmax)
+        }))
+    };
+    let labels = |places: &[usize]| places.iter().map(|&place| answer.models[place].class).collect();
+    let sample = Sample {
+        train: features(&train),
+        train_labels: labels(&train),
+        query: features(&query),
+        query_labels: labels(&query),
+        classes: answer.classes.len(),
+    };
+    (Arc::new(sample), Arc::new([train, query].concat()))
+}
+
+fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc<Vec<usize>>) {
+    let (sample, places) = sample(answer);
+    let selection = |method: Method| match method {
+        Method::FirstK => (1..=answer.settings.k as u32).collect(),
+        Method::BestK => (1..=8).collect(),
+        Method::ClimbError => answer.climb_error.value.as_ref().unwrap().climb.order(),
+        Method::ClimbAdr | Method::Boost => vec![2, 3, 5],
+    };
+    let row = |model: usize| places.iter().position(|&place| place == model);
+    let classes = || &answer.boosted.value.as_ref().unwrap().classes;
+    let out = || Arc::from("the model takes no part");
+    let found = match *question {
+        Question::Decisions(method) => {
+            Ok(Finding::Decisions(Arc::new(why::decisions(&sample, Distance::L2, &selection(method)))))
+        }
+        Question::Reasons { method: Method::Boost, model } => row(model)
+            .and_then(|row| why::votes(&sample, row, classes()))
+            .map(|votes| Finding::Votes(Arc::new(votes)))
+            .ok_or_else(out),
+        Question::Reasons { method, model } => row(model)
+            .and_then(|row| why::neighbours(&sample, row, Distance::L2, &selection(method)))
+            .map(|found| Finding::Neighbours(Arc::new(found)))
+            .ok_or_else(out),
+        Question::Shared(class) => why::shared(&sample, class, answer.settings.kmax)
+            .map(|shared| Finding::Shared(Arc::new(shared)))
+            .ok_or_else(|| "the class has fewer than two training models".into()),
+        Question::Shape(_) => Err("the file is not there".into()),
+    };
+    (found, places)
+}
+
+/// Lets the state have what it asks for. Answers without a member stay away, as the engine's do.
+pub fn served(mut state: State) -> State {
+    // Whatever happens makes the state say what it wants to know.
+    let size = state.size;
+    update(&mut state, Action::Resize(size.0, size.1));
+    let answer = Arc::clone(&state.answer);
+    let whole = answer.members.iter().all(|&m| answer.models.get(m).is_some_and(|m| m.eigenvalues.is_some()));
+    if whole && !answer.members.is_empty() {
+        for question in state.asked.clone() {
+            let (finding, places) = find(&answer, &question);
+            let reply = Reply { question, settings: answer.settings.clone(), places, finding };
+            update(&mut state, Action::Reply(Arc::new(reply)));
+        }
+    }
+    state
+}
