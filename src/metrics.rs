@@ -14,12 +14,8 @@
     reason = "what is not inlined is not compiled for the wider vectors of pulp's dispatch"
 )]
 
-pub(crate) use self::{
-    columns::Columns,
-    distance::{Chi2, L1, L2, Term, by_distance},
-    nearest::{Nearest, before},
-};
 pub use self::{
+    chance::Chance,
     distance::Distance,
     exam::Exam,
     features::Features,
@@ -28,11 +24,19 @@ pub use self::{
     sample::Sample,
     sweep::{Sweep, sweep},
 };
+pub(crate) use self::{
+    columns::Columns,
+    distance::{Chi2, L1, L2, Term, by_distance},
+    found::{gained, gained_with_itself, precision, ranking, ranks, sums},
+    nearest::{Nearest, before},
+};
 
+mod chance;
 mod columns;
 mod distance;
 mod exam;
 mod features;
+mod found;
 mod nearest;
 mod ranking;
 mod recall;

@@ -9,6 +9,8 @@ pub use self::{
     boosted::{Boosted, Mark, boosted, marks},
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
+    honest::{Honest, HonestPair, HonestRow, Interval, Method, Plan, honest, mcnemar},
+    retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
     tables::{Cell, Table, tables},
     why::Method,
 };
@@ -17,6 +19,8 @@ pub use crate::metrics::Sample;
 mod boosted;
 mod climbed;
 mod first_k;
+mod honest;
+mod retrieval;
 mod tables;
 pub mod why;
 

@@ -1,0 +1,289 @@
+//! Dealing models into folds, and asking every method for every fold.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+
+use super::{
+    Honest, HonestPair, HonestRow, Interval, Method, Plan,
+    method::Verdict,
+    test::{bootstrap, mcnemar, permutation},
+};
+use crate::{
+    metrics::{Cancelled, Chance, Distance, Exam, Features, Sample},
+    watch::Watch,
+};
+
+/// Streams of chance: one for the bootstrap, one for the permutations, and from here on one for each repeat.
+const DEALS: u64 = 2;
+
+/// What all repeats say of one method: sums by model.
+struct Tally {
+    /// How often each model was given a wrong class.
+    wrong: Vec<u32>,
+    /// Mean ADR of each model, where it has something to find.
+    adr: Option<Vec<Option<f64>>>,
+    repeats: Vec<f64>,
+    selected: f64,
+}
+
+/// Examines every method by the paper's protocol and by nested cross-validation over all models, and every pair of
+/// methods against each other.
+///
+/// Models are dealt class by class, so that every fold has as even a share of each as can be. With more folds than
+/// models, some folds are empty. The watch is told how many of the (repeats × folds × methods) parts are done.
+///
+/// # Errors
+/// [`Cancelled`] when the watch said so.
+pub fn honest(
+    sample: &Sample,
+    distance: Distance,
+    methods: &[Method],
+    plan: Plan,
+    watch: &dyn Watch,
+) -> Result<Honest, Cancelled> {
+    let queries = Exam::queries(sample);
+    let paper = |&method: &Method| {
+        let exams = [Exam::leave_one_out(sample), queries];
+        method.learn(sample, distance, &exams, watch)
+    };
+    let paper: Vec<Vec<Verdict>> = methods.par_iter().map(paper).collect::<Result<_, _>>()?;
+    let tallies = nested(sample, distance, methods, plan, watch)?;
+    let row = |(at, &method): (usize, &Method)| {
+        let (tally, asked) = (&tallies[at], plan.repeats.max(1) as f64);
+        let wrong: Vec<f64> = tally.wrong.iter().map(|&wrong| f64::from(wrong) / asked).collect();
+        HonestRow {
+            method,
+            apparent: share(&paper[at][0].wrong),
+            query: (!queries.is_empty()).then(|| share(&paper[at][1].wrong)),
+            error: interval(&wrong, plan, 1.0),
+            adr: tally.adr.as_ref().map(|adr| {
+                let known: Vec<f64> = adr.iter().copied().flatten().collect();
+                interval(&known, plan, 0.0)
+            }),
+            repeats: tally.repeats.clone(),
+            selected: tally.selected,
+        }
+    };
+    let rows = methods.iter().enumerate().map(row).collect();
+    let all = 0..methods.len();
+    let pairs = all.clone().flat_map(|first| (first + 1..all.end).map(move |second| (first, second)));
+    let pair = |(first, second): (usize, usize)| {
+        let wrong = tallies[first].wrong.iter().zip(&tallies[second].wrong);
+        let apart: Vec<i64> = wrong.map(|(&a, &b)| i64::from(a) - i64::from(b)).collect();
+        let differences: Vec<f64> = apart.iter().map(|&d| d as f64 / plan.repeats.max(1) as f64).collect();
+        let (a, b) = (&paper[first][1].wrong, &paper[second][1].wrong);
+        HonestPair {
+            first,
+            second,
+            difference: interval(&differences, plan, 0.0),
+            permutation: permutation(&apart, plan.resamples, Chance::new(plan.seed, 1)),
+            mcnemar: (!queries.is_empty()).then(|| mcnemar(a, b)),
+        }
+    };
+    Ok(Honest { plan, rows, pairs: pairs.map(pair).collect() })
+}
+
+fn interval(values: &[f64], plan: Plan, of_nothing: f64) -> Interval {
+    bootstrap(values, plan.resamples, Chance::new(plan.seed, 0)).unwrap_or(Interval {
+        mean: of_nothing,
+        low: of_nothing,
+        high: of_nothing,
+    })
+}
+
+fn share(wrong: &[bool]) -> f64 {
+    if wrong.is_empty() { 1.0 } else { wrong.iter().filter(|&&wrong| wrong).count() as f64 / wrong.len() as f64 }
+}
+
+/// The training models and then the queries, as rows and labels.
+fn pool(sample: &Sample) -> Vec<(&[f64], u32)> {
+    let train = (0..sample.train.rows()).map(|row| (sample.train.row(row), sample.train_labels[row]));
+    let query = (0..sample.query.rows()).map(|row| (sample.query.row(row), sample.query_labels[row]));
+    train.chain(query).collect()
+}
+
+/// The fold of every model.
+fn deal(labels: &[u32], classes: usize, folds: usize, mut chance: Chance) -> Vec<usize> {
+    let mut fold = vec![0; labels.len()];
+    // Goes on where the last class ended, so that small classes do not all begin at the first fold.
+    let mut next = 0;
+    for class in 0..classes {
+        let mut members: Vec<usize> = (0..labels.len()).filter(|&model| labels[model] as usize == class).collect();
+        chance.shuffle(&mut members);
+        for model in members {
+            fold[model] = next % folds;
+            next += 1;
+        }
+    }
+    fold
+}
+
+fn nested(
+    sample: &Sample,
+    distance: Distance,
+    methods: &[Method],
+    plan: Plan,
+    watch: &dyn Watch,
+) -> Result<Vec<Tally>, Cancelled> {
+    let models = pool(sample);
+    let labels: Vec<u32> = models.iter().map(|&(_, label)| label).collect();
+    let folds = plan.folds.max(1);
+    let deals: Vec<Vec<usize>> = (0..plan.repeats)
+        .map(|repeat| deal(&labels, sample.classes, folds, Chance::new(plan.seed, DEALS + repeat as u64)))
+        .collect();
+    let parts: Vec<(usize, usize, usize)> = (0..plan.repeats)
+        .flat_map(|repeat| (0..folds).map(move |fold| (repeat, fold)))
+        .flat_map(|(repeat, fold)| (0..methods.len()).map(move |method| (repeat, fold, method)))
+        .collect();
+    let done = AtomicUsize::new(0);
+    let part = |&(repeat, fold, method): &(usize, usize, usize)| {
+        if watch.cancelled() {
+            return Err(Cancelled);
+        }
+        let split = split(&models, &deals[repeat], fold, sample.classes);
+        let verdict = methods[method].learn(&split, distance, &[Exam::queries(&split)], watch)?.pop();
+        watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, parts.len());
+        Ok((repeat, fold, method, verdict))
+    };
+    let verdicts: Vec<_> = parts.par_iter().map(part).collect::<Result<_, _>>()?;
+    let mut tallies: Vec<Tally> = methods
+        .iter()
+        .map(|_| Tally { wrong: vec![0; models.len()], adr: None, repeats: vec![0.0; plan.repeats], selected: 0.0 })
+        .collect();
+    let runs = (plan.repeats * folds) as f64;
+    for (repeat, fold, method, verdict) in verdicts {
+        let (Some(verdict), tally) = (verdict, &mut tallies[method]) else { continue };
+        let asked = (0..models.len()).filter(|&model| deals[repeat][model] == fold);
+        tally.selected += verdict.selected / runs;
+        for (nth, model) in asked.enumerate() {
+            let wrong = verdict.wrong[nth];
+            tally.wrong[model] += u32::from(wrong);
+            tally.repeats[repeat] += f64::from(u8::from(wrong)) / models.len() as f64;
+            if let Some(adr) = verdict.adr.as_ref().and_then(|adr| adr[nth]) {
+                let sums = tally.adr.get_or_insert_with(|| vec![None; models.len()]);
+                *sums[model].get_or_insert(0.0) += adr / plan.repeats as f64;
+            }
+        }
+    }
+    Ok(tallies)
+}
+
+/// One fold asked against the others.
+fn split(models: &[(&[f64], u32)], deal: &[usize], fold: usize, classes: usize) -> Sample {
+    let side = |asked: bool| models.iter().zip(deal).filter(move |&(_, &of)| (of == fold) == asked);
+    let rows = |asked: bool| Features::from_rows(side(asked).map(|((row, _), _)| row));
+    let labels = |asked: bool| side(asked).map(|(&(_, label), _)| label).collect();
+    Sample { train: rows(false), train_labels: labels(false), query: rows(true), query_labels: labels(true), classes }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Plan, deal, honest};
+    use crate::{
+        metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures, samples::sample},
+        selection::{Cost, climb},
+        study::Method,
+        watch::{Unwatched, Watch},
+    };
+
+    const PLAN: Plan = Plan { folds: 3, repeats: 2, resamples: 200, seed: 5 };
+    const METHODS: [Method; 5] =
+        [Method::FirstK, Method::HillError, Method::Boost(6), Method::HillAdr, Method::Fixed(4)];
+
+    #[test]
+    fn folds_share_every_class() {
+        let labels: Vec<u32> = (0..40).map(|model| model % 4).collect();
+        let fold = deal(&labels, 4, 4, Chance::new(1, 2));
+        for class in 0..4 {
+            for part in 0..4 {
+                let members = (0..40).filter(|&model| labels[model] == class && fold[model] == part).count();
+                assert!((2..=3).contains(&members), "{members}");
+            }
+        }
+        assert_ne!(fold, deal(&labels, 4, 4, Chance::new(1, 3)));
+    }
+
+    #[test]
+    fn the_paper_s_protocol_stands_beside_it() {
+        let sample = sample(2, 7, 20, 0);
+        let found = honest(&sample, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap();
+        let order = climb(&sample, Distance::L2, Cost::Error, &Unwatched).unwrap().order();
+        assert_eq!(found.rows[1].apparent, figures(Exam::leave_one_out(&sample), Distance::L2, &order).0);
+        assert_eq!(found.rows[1].query, Some(figures(Exam::queries(&sample), Distance::L2, &order).0));
+        assert_eq!(found.pairs.len(), 10);
+        for row in &found.rows {
+            assert!(row.error.low <= row.error.mean && row.error.mean <= row.error.high);
+            let mean = row.repeats.iter().sum::<f64>() / 2.0;
+            assert!((mean - row.error.mean).abs() < 1e-12);
+            assert_eq!(row.adr.is_none(), matches!(row.method, Method::Boost(_)));
+        }
+    }
+
+    /// With as many folds as models each is asked against all others: what selects nothing gets the leave-one-out
+    /// figures of all models.
+    #[test]
+    fn one_model_in_each_fold_is_leave_one_out() {
+        let part = sample(3, 5, 10, 0);
+        let rows = (0..part.train.rows()).map(|row| part.train.row(row));
+        let all = Sample {
+            train: Features::from_rows(rows.chain((0..part.query.rows()).map(|row| part.query.row(row)))),
+            train_labels: [part.train_labels.clone(), part.query_labels.clone()].concat(),
+            query: Features::default(),
+            query_labels: Vec::new(),
+            classes: part.classes,
+        };
+        let plan = Plan { folds: all.train.rows(), repeats: 1, ..PLAN };
+        let found = honest(&part, Distance::L1, &[Method::Fixed(4)], plan, &Unwatched).unwrap();
+        let (error, adr) = figures(Exam::leave_one_out(&all), Distance::L1, &[1, 2, 3, 4]);
+        assert!((found.rows[0].error.mean - error).abs() < 1e-12);
+        assert!((found.rows[0].adr.unwrap().mean - adr).abs() < 1e-12);
+    }
+
+    /// Labels that say nothing: what is selected on the models that score it looks better than it is, and nested
+    /// cross-validation knows.
+    #[test]
+    fn selection_bias_shows() {
+        let mut chance = Chance::new(7, 0);
+        let mut row = || (0..60).map(|_| chance.below(1000) as f64).collect::<Vec<_>>();
+        let labels: Vec<u32> = (0..60).map(|model| model % 2).collect();
+        let sample = Sample {
+            train: Features::from_rows((0..60).map(|_| row())),
+            train_labels: labels,
+            classes: 2,
+            ..Sample::default()
+        };
+        let found = honest(&sample, Distance::L2, &[Method::HillError], PLAN, &Unwatched).unwrap();
+        assert!(found.rows[0].apparent < 0.3, "{}", found.rows[0].apparent);
+        assert!(found.rows[0].error.mean > 0.35, "{}", found.rows[0].error.mean);
+    }
+
+    #[test]
+    fn two_methods_that_are_one_do_not_differ() {
+        let sample = sample(4, 6, 12, 0);
+        let found = honest(&sample, Distance::L2, &[Method::Fixed(3), Method::Fixed(3)], PLAN, &Unwatched).unwrap();
+        let pair = found.pairs[0];
+        assert_eq!((pair.difference.mean, pair.permutation, pair.mcnemar), (0.0, 1.0, Some(1.0)));
+    }
+
+    #[test]
+    fn threads_do_not_matter() {
+        let sample = sample(4, 9, 15, 0);
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| honest(&sample, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap())
+        };
+        assert_eq!(run(1), run(5));
+    }
+
+    #[test]
+    fn stops_when_cancelled() {
+        struct Stop;
+        impl Watch for Stop {
+            fn cancelled(&self) -> bool {
+                true
+            }
+        }
+        assert_eq!(honest(&sample(5, 5, 5, 0), Distance::L2, &METHODS, PLAN, &Stop), Err(Cancelled));
+    }
+}
