@@ -9,7 +9,7 @@ pub use self::{
     boosted::{Boosted, Mark, boosted, marks},
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
-    honest::{Honest, HonestPair, HonestRow, Interval, Method, Plan, honest, mcnemar},
+    honest::{Honest, HonestPair, HonestRow, Interval, Learner, Plan, honest, mcnemar},
     retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
     tables::{Cell, Table, tables},
     why::Method,

@@ -12,9 +12,9 @@
 
 use serde::{Deserialize, Serialize};
 
-pub use self::{method::Method, nested::honest, test::mcnemar};
+pub use self::{learner::Learner, nested::honest, test::mcnemar};
 
-mod method;
+mod learner;
 mod nested;
 mod test;
 
@@ -52,7 +52,7 @@ pub struct Interval {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HonestRow {
     /// Which method.
-    pub method: Method,
+    pub method: Learner,
     /// The paper's protocol: ε on D, where it was selected, too (leave-one-out but for AdaBoost).
     pub apparent: f64,
     /// ε on Q after selection on D; none without query models.

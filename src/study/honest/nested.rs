@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::{
-    Honest, HonestPair, HonestRow, Interval, Method, Plan,
-    method::Verdict,
+    Honest, HonestPair, HonestRow, Interval, Learner, Plan,
+    learner::Verdict,
     test::{bootstrap, mcnemar, permutation},
 };
 use crate::{
@@ -38,18 +38,18 @@ struct Tally {
 pub fn honest(
     sample: &Sample,
     distance: Distance,
-    methods: &[Method],
+    methods: &[Learner],
     plan: Plan,
     watch: &dyn Watch,
 ) -> Result<Honest, Cancelled> {
     let queries = Exam::queries(sample);
-    let paper = |&method: &Method| {
+    let paper = |&method: &Learner| {
         let exams = [Exam::leave_one_out(sample), queries];
         method.learn(sample, distance, &exams, watch)
     };
     let paper: Vec<Vec<Verdict>> = methods.par_iter().map(paper).collect::<Result<_, _>>()?;
     let tallies = nested(sample, distance, methods, plan, watch)?;
-    let row = |(at, &method): (usize, &Method)| {
+    let row = |(at, &method): (usize, &Learner)| {
         let (tally, asked) = (&tallies[at], plan.repeats.max(1) as f64);
         let wrong: Vec<f64> = tally.wrong.iter().map(|&wrong| f64::from(wrong) / asked).collect();
         HonestRow {
@@ -122,7 +122,7 @@ fn deal(labels: &[u32], classes: usize, folds: usize, mut chance: Chance) -> Vec
 fn nested(
     sample: &Sample,
     distance: Distance,
-    methods: &[Method],
+    methods: &[Learner],
     plan: Plan,
     watch: &dyn Watch,
 ) -> Result<Vec<Tally>, Cancelled> {
@@ -183,13 +183,13 @@ mod tests {
     use crate::{
         metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures, samples::sample},
         selection::{Cost, climb},
-        study::Method,
+        study::Learner,
         watch::{Unwatched, Watch},
     };
 
     const PLAN: Plan = Plan { folds: 3, repeats: 2, resamples: 200, seed: 5 };
-    const METHODS: [Method; 5] =
-        [Method::FirstK, Method::HillError, Method::Boost(6), Method::HillAdr, Method::Fixed(4)];
+    const METHODS: [Learner; 5] =
+        [Learner::FirstK, Learner::HillError, Learner::Boost(6), Learner::HillAdr, Learner::Fixed(4)];
 
     #[test]
     fn folds_share_every_class() {
@@ -216,7 +216,7 @@ mod tests {
             assert!(row.error.low <= row.error.mean && row.error.mean <= row.error.high);
             let mean = row.repeats.iter().sum::<f64>() / 2.0;
             assert!((mean - row.error.mean).abs() < 1e-12);
-            assert_eq!(row.adr.is_none(), matches!(row.method, Method::Boost(_)));
+            assert_eq!(row.adr.is_none(), matches!(row.method, Learner::Boost(_)));
         }
     }
 
@@ -234,7 +234,7 @@ mod tests {
             classes: part.classes,
         };
         let plan = Plan { folds: all.train.rows(), repeats: 1, ..PLAN };
-        let found = honest(&part, Distance::L1, &[Method::Fixed(4)], plan, &Unwatched).unwrap();
+        let found = honest(&part, Distance::L1, &[Learner::Fixed(4)], plan, &Unwatched).unwrap();
         let (error, adr) = figures(Exam::leave_one_out(&all), Distance::L1, &[1, 2, 3, 4]);
         assert!((found.rows[0].error.mean - error).abs() < 1e-12);
         assert!((found.rows[0].adr.unwrap().mean - adr).abs() < 1e-12);
@@ -253,7 +253,7 @@ mod tests {
             classes: 2,
             ..Sample::default()
         };
-        let found = honest(&sample, Distance::L2, &[Method::HillError], PLAN, &Unwatched).unwrap();
+        let found = honest(&sample, Distance::L2, &[Learner::HillError], PLAN, &Unwatched).unwrap();
         assert!(found.rows[0].apparent < 0.3, "{}", found.rows[0].apparent);
         assert!(found.rows[0].error.mean > 0.35, "{}", found.rows[0].error.mean);
     }
@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn two_methods_that_are_one_do_not_differ() {
         let sample = sample(4, 6, 12, 0);
-        let found = honest(&sample, Distance::L2, &[Method::Fixed(3), Method::Fixed(3)], PLAN, &Unwatched).unwrap();
+        let found = honest(&sample, Distance::L2, &[Learner::Fixed(3), Learner::Fixed(3)], PLAN, &Unwatched).unwrap();
         let pair = found.pairs[0];
         assert_eq!((pair.difference.mean, pair.permutation, pair.mcnemar), (0.0, 1.0, Some(1.0)));
     }

@@ -12,7 +12,7 @@ use crate::{
 /// A way from labelled models to the class of another one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Method {
+pub enum Learner {
     /// Nearest neighbour over the first k eigenvalues, k with the least leave-one-out ε.
     FirstK,
     /// Nearest neighbour over the first k eigenvalues, k with the greatest leave-one-out mean ADR.
@@ -37,7 +37,7 @@ pub(super) struct Verdict {
     pub(super) selected: f64,
 }
 
-impl Method {
+impl Learner {
     /// The paper's three for ε, hill climbing for mean ADR, and two that select nothing.
     pub const DEFAULT: [Self; 6] =
         [Self::FirstK, Self::HillError, Self::Boost(20), Self::HillAdr, Self::Fixed(50), Self::Fixed(u32::MAX)];
