@@ -16,6 +16,7 @@ pub use self::{
     band::Band,
     normalise::Normalisation,
     timings::{Cost, Timings},
+    vectors::Eigenvector,
 };
 use crate::{
     laplacian::{Laplacian, LaplacianError, Mass, Operator, assemble},
@@ -32,6 +33,7 @@ mod factor;
 mod krylov;
 mod lanes;
 mod normalise;
+mod panel;
 mod part;
 mod pencil;
 mod poll;
@@ -44,9 +46,10 @@ mod solve;
 mod tests;
 mod thorough;
 mod timings;
+mod vectors;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
-pub const KERNEL: u32 = 1;
+pub const KERNEL: u32 = 2;
 
 /// Which eigenproblem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
@@ -217,4 +220,44 @@ pub fn solve_laplacian(
     watch: &dyn Watch,
 ) -> Result<Spectrum, SpectrumError> {
     solve::solve(laplacian, count, known, watch)
+}
+
+/// The eigenvectors of chosen eigenvalues of a mesh whose `spectrum` is known, one for each index in `wanted`.
+///
+/// Their values belong to the vertices of the mesh. Each is the same bits whichever others are asked for with it. The
+/// mesh and the choice must be those of the spectrum.
+///
+/// # Errors
+/// When the watch cancels, when the mesh cannot be assembled, when an index is not below [`Spectrum::count`], or when
+/// the vectors found do not belong to the eigenvalues.
+pub fn eigenvectors(
+    mesh: &Mesh,
+    choice: Choice,
+    spectrum: &Spectrum,
+    wanted: &[usize],
+    watch: &dyn Watch,
+) -> Result<Vec<Eigenvector>, SpectrumError> {
+    let laplacian = assemble(mesh, choice.operator, choice.mass)?;
+    let mut vectors = eigenvectors_laplacian(&laplacian, spectrum, wanted, watch)?;
+    for vector in &mut vectors {
+        let mut values = vec![0.0; mesh.vertices().len()];
+        for (&vertex, &value) in laplacian.vertices.iter().zip(&vector.values) {
+            values[vertex as usize] = value;
+        }
+        vector.values = values;
+    }
+    Ok(vectors)
+}
+
+/// [`eigenvectors()`] for matrices that are assembled already; the values belong to their rows.
+///
+/// # Errors
+/// As [`eigenvectors()`].
+pub fn eigenvectors_laplacian(
+    laplacian: &Laplacian,
+    spectrum: &Spectrum,
+    wanted: &[usize],
+    watch: &dyn Watch,
+) -> Result<Vec<Eigenvector>, SpectrumError> {
+    vectors::eigenvectors(laplacian, spectrum, wanted, watch)
 }

@@ -1,6 +1,11 @@
 //! All eigenvalues of a small connected piece.
 
-use super::{pencil::has_kernel, slice::Found, small::eigen};
+use super::{
+    lanes::WIDTH,
+    pencil::has_kernel,
+    slice::Found,
+    small::{eigen, identity},
+};
 use crate::laplacian::Symmetric;
 
 /// Up to this many rows a piece is solved densely.
@@ -21,13 +26,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
         let error = 2.0 * f64::EPSILON * value;
         return value.is_finite().then(|| vec![Found { value, near: error, error }]);
     }
-    let (mut l, mut b) = (vec![0.0; n * n], vec![0.0; n * n]);
-    for (row, column, stiffness, mass) in matrix.entries() {
-        for (i, j) in [(row, column), (column, row)] {
-            l[i * n + j] = stiffness;
-            b[i * n + j] = mass;
-        }
-    }
+    let (l, b) = full(matrix);
     let tau = 4.0 * std::f64::consts::PI / matrix.total_mass();
     let shifted: Vec<f64> = l.iter().zip(&b).map(|(l, b)| l + tau * b).collect();
     let mut inverse: Vec<f64> =
@@ -60,8 +59,58 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
     Some(found)
 }
 
+/// The vector of the eigenvalue with that index, ascending, with xᵀBx = 1.
+pub(super) fn direct(matrix: &Symmetric, index: usize) -> Option<Vec<f64>> {
+    let (l, b) = full(matrix);
+    Some(pairs(&l, &b, matrix.order())?.swap_remove(index).1)
+}
+
+/// Both matrices in full.
+fn full(matrix: &Symmetric) -> (Vec<f64>, Vec<f64>) {
+    let n = matrix.order();
+    let (mut l, mut b) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for (row, column, stiffness, mass) in matrix.entries() {
+        for (i, j) in [(row, column), (column, row)] {
+            l[i * n + j] = stiffness;
+            b[i * n + j] = mass;
+        }
+    }
+    (l, b)
+}
+
+/// The eigenpairs of `A x = λ B x`, ascending, with xᵀBx = 1.
+pub(super) fn pairs(a: &[f64], b: &[f64], n: usize) -> Option<Vec<(f64, Vec<f64>)>> {
+    let c = cholesky(b, n)?;
+    let mut m = congruent(a, &c, n);
+    let mut vectors = identity(n);
+    let per = n.div_ceil(WIDTH);
+    let values = eigen(&mut m, n, &mut vectors)?;
+    let mut found: Vec<(f64, Vec<f64>)> = values
+        .iter()
+        .enumerate()
+        .map(|(at, &value)| {
+            // x = C⁻ᵀ z
+            let mut x: Vec<f64> = (0..n).map(|row| vectors[at * per + row / WIDTH][row % WIDTH]).collect();
+            for i in (0..n).rev() {
+                x[i] /= c[i * n + i];
+                for k in 0..i {
+                    x[k] -= c[i * n + k] * x[i];
+                }
+            }
+            (value, x)
+        })
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(found)
+}
+
 /// Eigenvalues of C⁻¹ A C⁻ᵀ with `CCᵀ = B`.
 fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
+    eigen(&mut congruent(a, &cholesky(b, n)?, n), n, &mut [])
+}
+
+/// The lower triangular C with `CCᵀ = B`.
+fn cholesky(b: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut c = b.to_vec();
     for j in 0..n {
         for k in 0..j {
@@ -79,6 +128,11 @@ fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
             c[i * n + j] /= root;
         }
     }
+    Some(c)
+}
+
+/// C⁻¹ A C⁻ᵀ.
+fn congruent(a: &[f64], c: &[f64], n: usize) -> Vec<f64> {
     let mut m = a.to_vec();
     // Twice X = C⁻¹ M, transposing in between.
     for _ in 0..2 {
@@ -109,5 +163,5 @@ fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
             m[j * n + i] = mean;
         }
     }
-    eigen(&mut m, n, &mut [])
+    m
 }

@@ -8,6 +8,7 @@ use super::{
     block::{Combine, Dots, Multiply, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
+    panel::{Panel, PanelDots, PanelUpdate, Round, panels},
     pencil::Pencil,
     poll::{Poll, Stop},
     small::{eigen, identity},
@@ -18,10 +19,21 @@ use super::{
 /// each, where a Lanczos step costs a block of the basis as well.
 const WARMING: usize = 3;
 
+/// How much of each column must be independent of the columns before it in a block that stays (by Cholesky's
+/// decomposition Q is orthonormal to rounding over that), and in one that is only to be multiplied again.
+const STRICTLY: f64 = 1e-3;
+const ROUGHLY: f64 = 1e-9;
+
 /// Memory that one run leaves to the next.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    blocks: Vec<Buffer>,
+    /// The basis in single precision.
+    blocks: Vec<Vec<Panel>>,
+    /// The basis in double precision, where eigenvectors are wanted of it.
+    exact: Vec<Buffer>,
+    /// The newest block of the basis and the one before it.
+    now: Buffer,
+    past: Buffer,
     /// A⁻¹B V, then the next block before it is normalised.
     work: Buffer,
     /// B times that.
@@ -30,6 +42,8 @@ pub(super) struct Scratch {
     newest: Buffer,
     small: Vec<f64>,
     tails: Vec<Row>,
+    room: Vec<Row>,
+    sums: Vec<Square>,
 }
 
 /// An approximate eigenvalue.
@@ -43,14 +57,31 @@ pub(super) struct Ritz {
     pub residual: f64,
 }
 
+/// What a basis is for.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Purpose<'a> {
+    /// Eigenvalues alone: it is kept in single precision.
+    Values,
+    /// Eigenvectors too: it is kept in double precision, and orthogonal to these vectors, in whole blocks.
+    Vectors(&'a [Buffer]),
+}
+
+impl<'a> Purpose<'a> {
+    fn locked(self) -> &'a [Buffer] {
+        match self {
+            Self::Values => &[],
+            Self::Vectors(locked) => locked,
+        }
+    }
+}
+
 /// A Lanczos process at one shift.
 pub(super) struct Krylov<'a> {
     pencil: &'a Pencil,
     factor: &'a Factor,
     sigma: f64,
     scratch: &'a mut Scratch,
-    /// Vectors that every block is kept orthogonal to, in whole blocks.
-    locked: &'a [Buffer],
+    purpose: Purpose<'a>,
     /// Diagonal blocks of the projected operator.
     alpha: Vec<Square>,
     /// Blocks below the diagonal: `beta[j]` couples block j to block j + 1.
@@ -68,22 +99,23 @@ impl<'a> Krylov<'a> {
         factor: &'a Factor,
         sigma: f64,
         seed: u64,
-        locked: &'a [Buffer],
+        purpose: Purpose<'a>,
         scratch: &'a mut Scratch,
         poll: &mut Poll,
     ) -> Result<Self, Stop> {
         let len = pencil.order() * WIDTH;
-        for buffer in [&mut scratch.work, &mut scratch.mass, &mut scratch.newest] {
+        let Scratch { now, past, work, mass, newest, .. } = &mut *scratch;
+        for buffer in [now, past, work, mass, newest] {
             buffer.reserve(len);
         }
         let mut random = Random(seed);
         scratch.work.flat().fill_with(|| random.next());
-        let mut this = Self { pencil, factor, sigma, scratch, locked, alpha: Vec::new(), beta: Vec::new(), random };
+        let mut this = Self { pencil, factor, sigma, scratch, purpose, alpha: Vec::new(), beta: Vec::new(), random };
         for _ in 0..WARMING {
-            this.normalise(0, poll)?;
+            this.normalise(0, ROUGHLY, poll)?;
             this.apply(poll)?;
         }
-        this.normalise(0, poll)?;
+        this.normalise(0, STRICTLY, poll)?;
         this.keep();
         Ok(this)
     }
@@ -103,7 +135,7 @@ impl<'a> Krylov<'a> {
         self.recur();
         poll.charge(Cost::Orthogonalisation);
         self.orthogonalise(blocks, poll)?;
-        let beta = self.normalise(blocks, poll)?;
+        let beta = self.normalise(blocks, STRICTLY, poll)?;
         self.beta.push(beta);
         self.keep();
         Ok(())
@@ -121,43 +153,61 @@ impl<'a> Krylov<'a> {
     /// removes.
     fn recur(&mut self) {
         let at = self.alpha.len();
-        let Scratch { blocks, work, newest, .. } = &mut *self.scratch;
+        let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
         if let Some(before) = at.checked_sub(1) {
             let beta = &self.beta[before];
             let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
-            dispatch(Update { basis: &[blocks[before].rows()], factors: &[factor], w: work.rows_mut() });
+            dispatch(Update { basis: &[past.rows()], factors: &[factor], w: work.rows_mut() });
         }
         let mut sum = [Square::default()];
         dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut sum });
         let [sum] = sum;
         let alpha: Square = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (sum[i][j] + sum[j][i])));
-        dispatch(Update { basis: &[blocks[at].rows()], factors: &[alpha], w: work.rows_mut() });
+        dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
         self.alpha.push(alpha);
     }
 
     /// Makes `work` B-orthogonal to the locked vectors and to so many blocks.
     fn orthogonalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<(), Stop> {
-        let Scratch { blocks: basis, work, mass, .. } = &mut *self.scratch;
-        let all: Vec<&[Row]> = self.locked.iter().chain(&basis[..blocks]).map(Buffer::rows).collect();
-        if all.is_empty() {
+        let Scratch { blocks: basis, exact, now, past, work, mass, room, sums: single, .. } = &mut *self.scratch;
+        if self.purpose.locked().is_empty() && blocks == 0 {
             return Ok(());
         }
+        let double = matches!(self.purpose, Purpose::Vectors(_));
+        let recent = if double { &exact[..blocks] } else { &[] };
+        let last = if double { 0 } else { blocks };
+        let all: Vec<&[Row]> = self
+            .purpose
+            .locked()
+            .iter()
+            .chain(recent)
+            .chain([&*now, &*past].into_iter().take(last))
+            .map(Buffer::rows)
+            .collect();
         dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
         poll.charge(Cost::Products);
         let mut sums = vec![Square::default(); all.len()];
         dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
         poll.spend(work.rows().len() * all.len() * WIDTH)?;
         dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
-        poll.charge(Cost::Orthogonalisation);
         poll.spend(work.rows().len() * all.len() * WIDTH)?;
+        if !double {
+            let basis: Vec<&[Panel]> = basis[..blocks.saturating_sub(2)].iter().map(Vec::as_slice).collect();
+            dispatch(PanelDots { basis: &basis, t: mass.rows(), room, sums: single });
+            poll.spend(work.rows().len() * basis.len() * WIDTH / 2)?;
+            let factors: Vec<_> = single.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect();
+            dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut() });
+            poll.spend(work.rows().len() * basis.len() * WIDTH / 2)?;
+        }
+        poll.charge(Cost::Orthogonalisation);
         Ok(())
     }
 
     /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix; Q in `work`, `BQ` in `newest`.
     /// Columns that depend on the others are replaced by random ones, with zeros in R.
-    fn normalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<Square, Stop> {
+    fn normalise(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<Square, Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-        if blocks == 0 && !self.locked.is_empty() {
+        if blocks == 0 && !self.purpose.locked().is_empty() {
             self.orthogonalise(0, poll)?;
         }
         for _ in 0..6 {
@@ -172,7 +222,7 @@ impl<'a> Krylov<'a> {
             poll.spend(4 * WIDTH * work.rows().len())?;
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);
-            if lost == 0 && worst > 1e-2 {
+            if lost == 0 && worst > share {
                 return Ok(total);
             }
             // Cholesky's Q is off by rounding over `worst`: it takes a second round, but Q still has the basis's
@@ -196,12 +246,25 @@ impl<'a> Krylov<'a> {
     /// Takes `work` as the next block of the basis.
     fn keep(&mut self) {
         let at = self.beta.len();
-        if self.scratch.blocks.len() == at {
-            self.scratch.blocks.push(Buffer::default());
+        let Scratch { blocks, exact, now, past, work, .. } = &mut *self.scratch;
+        match self.purpose {
+            Purpose::Values => {
+                if blocks.len() == at {
+                    blocks.push(Vec::new());
+                }
+                blocks[at].resize(panels(work.rows().len()), Panel::default());
+                dispatch(Round { x: work.rows(), to: &mut blocks[at] });
+            }
+            Purpose::Vectors(_) => {
+                if exact.len() == at {
+                    exact.push(Buffer::default());
+                }
+                exact[at].reserve(self.pencil.order() * WIDTH);
+                exact[at].rows_mut().copy_from_slice(work.rows());
+            }
         }
-        let len = self.pencil.order() * WIDTH;
-        self.scratch.blocks[at].reserve(len);
-        self.scratch.blocks[at].rows_mut().copy_from_slice(self.scratch.work.rows());
+        std::mem::swap(past, now);
+        std::mem::swap(now, work);
     }
 
     /// The Ritz values of the basis without its last block, by distance from the shift.
@@ -235,7 +298,7 @@ impl<'a> Krylov<'a> {
 
 impl Krylov<'_> {
     /// The Ritz vectors of the values among [`ritz`](Self::ritz)'s that `wanted` names, eight to a block, padded with
-    /// zeros.
+    /// zeros. For a basis in double precision.
     pub(super) fn vectors(&mut self, wanted: &[Ritz]) -> Option<Vec<Buffer>> {
         let blocks = self.alpha.len();
         let n = blocks * WIDTH;
@@ -244,7 +307,7 @@ impl Krylov<'_> {
         let theta = eigen(&mut self.scratch.small, n, &mut all)?;
         let columns: Vec<usize> =
             wanted.iter().filter_map(|ritz| theta.iter().position(|theta| *theta == ritz.theta)).collect();
-        let basis: Vec<&[Row]> = self.scratch.blocks[..blocks].iter().map(Buffer::rows).collect();
+        let basis: Vec<&[Row]> = self.scratch.exact[..blocks].iter().map(Buffer::rows).collect();
         let made = columns.chunks(WIDTH).map(|columns| {
             let mut factors = vec![Square::default(); blocks];
             for (at, &column) in columns.iter().enumerate() {
@@ -342,93 +405,4 @@ impl Random {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        laplacian::{Mass, Operator, assemble},
-        spectrum::shapes,
-        watch::Unwatched,
-    };
-
-    #[test]
-    fn the_basis_is_orthonormal_and_the_residuals_are_true() {
-        let laplacian = assemble(&shapes::grid(50, 31), Operator::Fem, Mass::Consistent).unwrap();
-        let pencil = Pencil::new(&laplacian.matrix).unwrap();
-        let mut poll = Poll::new(&Unwatched);
-        let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
-        let sigma = 123.0;
-        factor.compute(&pencil.symbolic, &pencil.matrix, sigma, &mut poll).unwrap();
-        let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, &[], &mut scratch, &mut poll).unwrap();
-        for _ in 0..14 {
-            krylov.step(&mut poll).unwrap();
-        }
-        let n = pencil.order();
-        let mut product = vec![[0.0; WIDTH]; n];
-        for i in 0..krylov.blocks() {
-            let x = krylov.scratch.blocks[i].rows();
-            dispatch(Multiply { mass: &pencil.mass, x, to: &mut product });
-            for j in 0..krylov.blocks() {
-                let mut sum = [Square::default()];
-                dispatch(Dots { basis: &[krylov.scratch.blocks[j].rows()], t: &product, sums: &mut sum });
-                for (k, row) in sum[0].iter().enumerate() {
-                    for (l, entry) in row.iter().enumerate() {
-                        let unit = f64::from(u8::from(i == j && k == l));
-                        assert!((entry - unit).abs() < 1e-12, "blocks {i} {j}: {entry}");
-                    }
-                }
-            }
-        }
-        let ritz = krylov.ritz(&mut poll).unwrap();
-        let vectors = krylov.vectors(&ritz[..40]).unwrap();
-        for (at, ritz) in ritz[..40].iter().enumerate() {
-            let x: Vec<f64> = vectors[at / WIDTH].rows().iter().map(|row| row[at % WIDTH]).collect();
-            let (mut lx, mut bx) = (vec![0.0; n], vec![0.0; n]);
-            for (row, column, l, b) in pencil.matrix.entries() {
-                lx[row] += l * x[column];
-                bx[row] += b * x[column];
-                if row != column {
-                    lx[column] += l * x[row];
-                    bx[column] += b * x[row];
-                }
-            }
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let quotient = dot(&x, &lx) / dot(&x, &bx);
-            // The quotient's own error is of second order.
-            let bound = ritz.residual * ritz.residual / ritz.theta.abs().powi(3) * 100.0;
-            assert!((dot(&x, &bx) - 1.0).abs() < 1e-12);
-            assert!((quotient - ritz.value).abs() < 1e-13 * (ritz.value + sigma) + bound, "{quotient} {ritz:?}");
-        }
-    }
-
-    #[test]
-    fn dependent_columns_are_replaced() {
-        let laplacian = assemble(&shapes::grid(20, 20), Operator::Fem, Mass::Consistent).unwrap();
-        let pencil = Pencil::new(&laplacian.matrix).unwrap();
-        let mut poll = Poll::new(&Unwatched);
-        let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
-        factor.compute(&pencil.symbolic, &pencil.matrix, 50.0, &mut poll).unwrap();
-        let mut krylov = Krylov::start(&pencil, &factor, 50.0, 5, &[], &mut scratch, &mut poll).unwrap();
-        for row in krylov.scratch.work.rows_mut() {
-            row[3] = 2.0 * row[1] - row[0];
-            row[7] = 0.0;
-        }
-        let before = krylov.scratch.work.rows().to_vec();
-        let upper = krylov.normalise(0, &mut poll).unwrap();
-        let gram = dispatch(Multiply {
-            mass: &pencil.mass,
-            x: krylov.scratch.work.rows(),
-            to: krylov.scratch.mass.rows_mut(),
-        });
-        for (i, row) in gram.iter().enumerate() {
-            for (j, entry) in row.iter().enumerate() {
-                assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-12);
-            }
-        }
-        for (before, q) in before.iter().zip(krylov.scratch.work.rows()) {
-            for (j, before) in before.iter().enumerate() {
-                let product: f64 = (0..WIDTH).map(|k| q[k] * upper[k][j]).sum();
-                assert!((product - before).abs() < 1e-10, "column {j}: {product} {before}");
-            }
-        }
-    }
-}
+mod tests;

@@ -1,13 +1,14 @@
 //! Eight numbers at a time: the arithmetic that every kernel of the solver is written in.
 //!
 //! Blocks of vectors are kept as rows of eight contiguous values, one per vector. A row is one AVX-512 register, two
-//! AVX2 registers or an array that the compiler makes the best of. The choice is made at run time; the results of the
-//! first two are the same bits, because both fuse every multiplication with its addition in the same order.
+//! AVX2 registers or an array that the compiler makes the best of. The choice is made at run time; the results are the
+//! same bits, because all of them fuse every multiplication with its addition and add in the same order. Machines that
+//! share a store of spectra may therefore differ.
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 #[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::{__m256d, __m512d};
+use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d};
 
 /// Vectors per block.
 pub(super) const WIDTH: usize = 8;
@@ -57,6 +58,8 @@ impl Buffer {
 pub(super) trait Lanes: Copy {
     /// Eight numbers in registers.
     type Reg: Copy;
+    /// Sixteen single-precision numbers in registers.
+    type Wide: Copy;
     /// True when 16 or more accumulators fit the registers.
     const MANY: bool;
     fn load(self, row: &Row) -> Self::Reg;
@@ -67,7 +70,19 @@ pub(super) trait Lanes: Copy {
     /// `c − a b`
     fn sub_mul(self, c: Self::Reg, a: Self::Reg, b: Self::Reg) -> Self::Reg;
     fn sub(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
+    fn add(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
     fn mul(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
+    fn wide(self, values: &[f32; 16]) -> Self::Wide;
+    fn wide_splat(self, value: f32) -> Self::Wide;
+    fn wide_row(self, value: Self::Wide) -> [f32; 16];
+    /// `a b + c`
+    fn wide_add_mul(self, c: Self::Wide, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// The first and the last eight in double precision.
+    fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
+    /// Sixteen rows, rounded to single precision, as eight columns.
+    fn columns(self, rows: &[Row; 16]) -> [Self::Wide; WIDTH];
+    /// Eight columns as sixteen rows in double precision.
+    fn rows(self, columns: [Self::Wide; WIDTH]) -> [Self::Reg; 16];
 
     #[inline(always)]
     fn zero(self) -> Self::Reg {
@@ -112,6 +127,7 @@ struct Avx512(pulp::x86::V4);
 #[cfg(target_arch = "x86_64")]
 impl Lanes for Avx512 {
     type Reg = __m512d;
+    type Wide = __m512;
     const MANY: bool = true;
 
     #[inline(always)]
@@ -142,6 +158,45 @@ impl Lanes for Avx512 {
     fn mul(self, a: __m512d, b: __m512d) -> __m512d {
         self.0.avx512f._mm512_mul_pd(a, b)
     }
+    #[inline(always)]
+    fn add(self, a: __m512d, b: __m512d) -> __m512d {
+        self.0.avx512f._mm512_add_pd(a, b)
+    }
+    #[inline(always)]
+    fn wide(self, values: &[f32; 16]) -> __m512 {
+        pulp::cast(*values)
+    }
+    #[inline(always)]
+    fn wide_splat(self, value: f32) -> __m512 {
+        self.0.avx512f._mm512_set1_ps(value)
+    }
+    #[inline(always)]
+    fn wide_row(self, value: __m512) -> [f32; 16] {
+        pulp::cast(value)
+    }
+    #[inline(always)]
+    fn wide_add_mul(self, c: __m512, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_fmadd_ps(a, b, c)
+    }
+    #[inline(always)]
+    fn widen(self, value: __m512) -> [__m512d; 2] {
+        let halves: [__m256; 2] = pulp::cast(value);
+        halves.map(|half| self.0.avx512f._mm512_cvtps_pd(half))
+    }
+    #[inline(always)]
+    fn columns(self, rows: &[Row; 16]) -> [__m512; WIDTH] {
+        let row = |at: usize| self.0.avx512f._mm512_cvtpd_ps(self.load(&rows[at]));
+        let low = transpose(self.0.avx, std::array::from_fn(row));
+        let high = transpose(self.0.avx, std::array::from_fn(|at| row(8 + at)));
+        std::array::from_fn(|at| pulp::cast([low[at], high[at]]))
+    }
+    #[inline(always)]
+    fn rows(self, columns: [__m512; WIDTH]) -> [__m512d; 16] {
+        let halves: [[__m256; 2]; WIDTH] = columns.map(pulp::cast);
+        let low = transpose(self.0.avx, halves.map(|[low, _]| low));
+        let high = transpose(self.0.avx, halves.map(|[_, high]| high));
+        std::array::from_fn(|at| self.0.avx512f._mm512_cvtps_pd(if at < 8 { low[at] } else { high[at - 8] }))
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -151,6 +206,7 @@ struct Avx2(pulp::x86::V3);
 #[cfg(target_arch = "x86_64")]
 impl Lanes for Avx2 {
     type Reg = [__m256d; 2];
+    type Wide = [__m256; 2];
     const MANY: bool = false;
 
     #[inline(always)]
@@ -184,14 +240,92 @@ impl Lanes for Avx2 {
     fn mul(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         [self.0.avx._mm256_mul_pd(a[0], b[0]), self.0.avx._mm256_mul_pd(a[1], b[1])]
     }
+    #[inline(always)]
+    fn add(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_add_pd(a[0], b[0]), self.0.avx._mm256_add_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn wide(self, values: &[f32; 16]) -> [__m256; 2] {
+        let (halves, _) = values.as_chunks::<8>();
+        [pulp::cast(halves[0]), pulp::cast(halves[1])]
+    }
+    #[inline(always)]
+    fn wide_splat(self, value: f32) -> [__m256; 2] {
+        [self.0.avx._mm256_set1_ps(value); 2]
+    }
+    #[inline(always)]
+    fn wide_row(self, value: [__m256; 2]) -> [f32; 16] {
+        pulp::cast(value)
+    }
+    #[inline(always)]
+    fn wide_add_mul(self, c: [__m256; 2], a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        [self.0.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
+    }
+    #[inline(always)]
+    fn widen(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {
+        value.map(|half| self.doubles(half))
+    }
+    #[inline(always)]
+    fn columns(self, rows: &[Row; 16]) -> [[__m256; 2]; WIDTH] {
+        let row = |at: usize| -> __m256 {
+            let [low, high] = self.load(&rows[at]);
+            pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)])
+        };
+        let low = transpose(self.0.avx, std::array::from_fn(row));
+        let high = transpose(self.0.avx, std::array::from_fn(|at| row(8 + at)));
+        std::array::from_fn(|at| [low[at], high[at]])
+    }
+    #[inline(always)]
+    fn rows(self, columns: [[__m256; 2]; WIDTH]) -> [[__m256d; 2]; 16] {
+        let low = transpose(self.0.avx, columns.map(|[low, _]| low));
+        let high = transpose(self.0.avx, columns.map(|[_, high]| high));
+        std::array::from_fn(|at| self.doubles(if at < 8 { low[at] } else { high[at - 8] }))
+    }
 }
 
-/// Arrays, for processors without the above: not fused, since that would be a call into a library.
+#[cfg(target_arch = "x86_64")]
+impl Avx2 {
+    #[inline(always)]
+    fn doubles(self, value: __m256) -> [__m256d; 2] {
+        let [low, high]: [__m128; 2] = pulp::cast(value);
+        [self.0.avx._mm256_cvtps_pd(low), self.0.avx._mm256_cvtps_pd(high)]
+    }
+}
+
+/// Eight by eight numbers, turned over.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn transpose(avx: pulp::core_arch::x86::Avx, rows: [__m256; 8]) -> [__m256; 8] {
+    let [a, b, c, d, e, f, g, h] = rows;
+    let pairs = |x, y| (avx._mm256_unpacklo_ps(x, y), avx._mm256_unpackhi_ps(x, y));
+    // Two rows, then four, then eight in a register.
+    let fours = |(xl, xh), (yl, yh)| {
+        [
+            avx._mm256_shuffle_ps::<0x44>(xl, yl),
+            avx._mm256_shuffle_ps::<0xee>(xl, yl),
+            avx._mm256_shuffle_ps::<0x44>(xh, yh),
+            avx._mm256_shuffle_ps::<0xee>(xh, yh),
+        ]
+    };
+    let upper = fours(pairs(a, b), pairs(c, d));
+    let lower = fours(pairs(e, f), pairs(g, h));
+    std::array::from_fn(|at| {
+        if at < 4 {
+            avx._mm256_permute2f128_ps::<0x20>(upper[at], lower[at])
+        } else {
+            avx._mm256_permute2f128_ps::<0x31>(upper[at - 4], lower[at - 4])
+        }
+    })
+}
+
+/// Arrays, for processors without the above. Where they cannot fuse a multiplication with an addition (x86-64 from
+/// before 2013) every one is a call into a library: slow, but the same bits.
 #[derive(Clone, Copy)]
 struct Plain;
 
 impl Lanes for Plain {
     type Reg = [f64; WIDTH];
+    type Wide = [f32; 16];
     const MANY: bool = false;
 
     #[inline(always)]
@@ -208,11 +342,11 @@ impl Lanes for Plain {
     }
     #[inline(always)]
     fn add_mul(self, c: [f64; WIDTH], a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        std::array::from_fn(|at| a[at] * b[at] + c[at])
+        std::array::from_fn(|at| a[at].mul_add(b[at], c[at]))
     }
     #[inline(always)]
     fn sub_mul(self, c: [f64; WIDTH], a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        std::array::from_fn(|at| c[at] - a[at] * b[at])
+        std::array::from_fn(|at| (-a[at]).mul_add(b[at], c[at]))
     }
     #[inline(always)]
     fn sub(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
@@ -221,5 +355,37 @@ impl Lanes for Plain {
     #[inline(always)]
     fn mul(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         std::array::from_fn(|at| a[at] * b[at])
+    }
+    #[inline(always)]
+    fn add(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
+        std::array::from_fn(|at| a[at] + b[at])
+    }
+    #[inline(always)]
+    fn wide(self, values: &[f32; 16]) -> [f32; 16] {
+        *values
+    }
+    #[inline(always)]
+    fn wide_splat(self, value: f32) -> [f32; 16] {
+        [value; 16]
+    }
+    #[inline(always)]
+    fn wide_row(self, value: [f32; 16]) -> [f32; 16] {
+        value
+    }
+    #[inline(always)]
+    fn wide_add_mul(self, c: [f32; 16], a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
+        std::array::from_fn(|at| a[at].mul_add(b[at], c[at]))
+    }
+    #[inline(always)]
+    fn widen(self, value: [f32; 16]) -> [[f64; WIDTH]; 2] {
+        std::array::from_fn(|half| std::array::from_fn(|at| f64::from(value[8 * half + at])))
+    }
+    #[inline(always)]
+    fn columns(self, rows: &[Row; 16]) -> [[f32; 16]; WIDTH] {
+        std::array::from_fn(|column| std::array::from_fn(|row| rows[row][column] as f32))
+    }
+    #[inline(always)]
+    fn rows(self, columns: [[f32; 16]; WIDTH]) -> [[f64; WIDTH]; 16] {
+        std::array::from_fn(|row| std::array::from_fn(|column| f64::from(columns[column][row])))
     }
 }

@@ -3,7 +3,7 @@
 use super::{
     band::Band,
     factor::Factor,
-    krylov::{Krylov, Scratch},
+    krylov::{Krylov, Purpose, Scratch},
     lanes::WIDTH,
     pencil::Pencil,
     poll::{Poll, Stop},
@@ -12,15 +12,13 @@ use super::{
 };
 
 /// Eigenvalues that a slice aims at.
-const TARGET: f64 = 40.0;
+const TARGET: f64 = 48.0;
 /// Eigenvalues that a slice may have before it is made narrower.
-const MOST: usize = 64;
+const MOST: usize = 76;
 /// Blocks of a basis after which a process gives up.
-const BLOCKS: usize = 30;
-/// The largest entry that the triangular factor may have: errors of the counts and solves grow with it.
-const GROWTH: f64 = 1e5;
+const BLOCKS: usize = 36;
 /// Blocks after which it looks at its Ritz values for the first time, and every how many then.
-const FIRST_LOOK: usize = 10;
+const FIRST_LOOK: usize = 14;
 const LOOK: usize = 2;
 
 /// Everything that the parts share while one of them works.
@@ -100,22 +98,28 @@ impl Part {
     /// When cancelled, or when the certificate cannot be had.
     pub(super) fn advance(&mut self, tools: &mut Tools, count: usize, poll: &mut Poll) -> Result<(), Advance> {
         if self.right.is_none()
-            && let Some((lower, upper, count)) = self.last()
+            && let Some((lower, upper, within)) = self.last()
         {
             // The process at the last shift once more: it ran in another session, and took the same course there.
             let found = self.factor(tools, upper, poll)?;
             if found != Some(self.counted()) {
                 return Err(Advance::Uncertified { at: upper * self.unit });
             }
-            let ahead = Ahead { width: Self::step(lower, upper, count), wanted: true };
-            let at = (upper, self.counted());
-            self.right = self.process(tools, at, ahead, &mut |_| Verdict::Settled, poll)?.1;
+            let task = Task {
+                sigma: upper,
+                above: self.counted(),
+                left: upper - self.middle(self.bands.len() - 1),
+                right: Some(0.5 * Self::step(lower, upper, within)),
+                near: 0.0,
+            };
+            self.right = Some(self.process(tools, task, poll)?.right);
         }
         let (lower, mut upper) = match self.last() {
             None => (0.0, 0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure),
             Some((lower, upper, count)) => (upper, upper + Self::step(lower, upper, count)),
         };
         let below = self.counted();
+        let middle = self.middle(self.bands.len());
         let right = self.right.take().unwrap_or_default();
         // A shift on top of an eigenvalue, or one with too many before it, is moved by a rule that knows nothing but
         // this part, so that it moves the same way every time.
@@ -132,40 +136,47 @@ impl Part {
                 upper = lower + (upper - lower) * (0.8 * TARGET / total as f64).clamp(0.1, 0.8);
                 continue;
             }
-            let ahead = Ahead { width: Self::step(lower, upper, total), wanted: above < count };
-            let spacing = (upper - lower) / total.max(1) as f64;
-            let near = 1e-6 * spacing;
-            let mut joined = None;
-            let mut judge = |sides: &Sides| {
-                if sides.nearest < near {
-                    return Verdict::TooNear;
-                }
-                joined = join(&right.found, &sides.left.found, total);
-                if joined.is_some() { Verdict::Settled } else { Verdict::More }
+            let half = 0.5 * Self::step(lower, upper, total);
+            let task = Task {
+                sigma: upper,
+                above,
+                left: upper - middle,
+                right: (above < count).then_some(half),
+                near: 1e-6 * (upper - lower) / total.max(1) as f64,
             };
-            let next = match self.process(tools, (upper, above), ahead, &mut judge, poll) {
-                Ok((_, next)) => next,
+            let sides = match self.process(tools, task, poll) {
+                Ok(sides) => sides,
                 Err(Advance::TooNear) => {
                     upper += 0.013 * (upper - lower);
                     continue;
                 }
                 Err(other) => return Err(other),
             };
+            let joined = join(&right.found, &sides.left.found, total);
             let found = match joined {
                 Some(found) => found,
                 None => thorough(&self.pencil, tools, lower..upper, total, self.seed(1), poll)?
                     .ok_or(Advance::Uncertified { at: upper * self.unit })?,
             };
-            self.right = next;
+            self.right = task.right.map(|_| sides.right);
             return self.finish(lower, upper, above, found);
         }
         Err(Advance::Uncertified { at: upper * self.unit })
     }
 
+    /// Where the right side of the process below a band gives over to the left side of the one above it.
+    fn middle(&self, place: usize) -> f64 {
+        place.checked_sub(1).map_or(0.0, |before| {
+            let band = &self.bands[before];
+            let (lower, upper) = (band.lower / self.unit, band.upper / self.unit);
+            upper + 0.5 * Self::step(lower, upper, band.values.len())
+        })
+    }
+
     /// Factors at σ and counts; `None` when rounding may have spoilt the factor, so that σ has to move.
     fn factor(&self, tools: &mut Tools, sigma: f64, poll: &mut Poll) -> Result<Option<usize>, Advance> {
         match tools.factor.compute(&self.pencil.symbolic, &self.pencil.matrix, sigma, poll) {
-            Ok(negative) => Ok((tools.factor.growth() < GROWTH).then_some(negative)),
+            Ok(negative) => Ok(tools.factor.is_sound().then_some(negative)),
             Err(Stop::Pivot) => Ok(None),
             Err(Stop::Cancelled) => Err(Advance::Cancelled),
         }
@@ -175,53 +186,40 @@ impl Part {
         (kind << 62) ^ (u64::from(self.number) << 32) ^ self.bands.len() as u64
     }
 
-    /// Runs Lanczos at a factored shift until the left side satisfies `judge` and the right side reaches half of the
-    /// step ahead. Returns whether the left side did, and the right side as it was when it had reached so far:
-    /// neither depends on how long the other took.
-    fn process(
-        &self,
-        tools: &mut Tools,
-        (sigma, above): (f64, usize),
-        ahead: Ahead,
-        judge: &mut dyn FnMut(&Sides) -> Verdict,
-        poll: &mut Poll,
-    ) -> Result<(bool, Option<Side>), Advance> {
+    /// Runs Lanczos at a factored shift until both sides reach as far as they are asked to.
+    fn process(&self, tools: &mut Tools, task: Task, poll: &mut Poll) -> Result<Sides, Advance> {
+        let Task { sigma, above, left, right, near } = task;
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch } = tools;
         poll.meter.timings.processes += 1;
-        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, &[], scratch, poll)?;
+        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, Purpose::Values, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
-        let mut settled = false;
-        let mut right = None;
-        let mut latest = Side::default();
-        let half = 0.5 * ahead.width;
-        while krylov.blocks() <= most {
+        let mut done = Sides::default();
+        let spacing = (left + right.unwrap_or(left)) / TARGET;
+        for blocks in 1..=most {
             krylov.step(poll)?;
-            let blocks = krylov.blocks() - 1;
             if blocks != most && (blocks < FIRST_LOOK || !(blocks - FIRST_LOOK).is_multiple_of(LOOK)) {
                 continue;
             }
             let Some(ritz) = krylov.ritz(poll) else { break };
-            let sides = Sides::new(&ritz, sigma, ahead.width / TARGET, 1e-4 * sigma);
-            if !settled {
-                match judge(&sides) {
-                    Verdict::Settled => settled = true,
-                    Verdict::More => {}
-                    Verdict::TooNear => return Err(Advance::TooNear),
-                }
+            let sides = Sides::new(&ritz, sigma, spacing, 1e-4 * sigma);
+            if sides.nearest < near {
+                return Err(Advance::TooNear);
             }
-            if right.is_none() && ahead.wanted {
-                latest = sides.right;
-                if latest.reach >= half || latest.found.len() >= beyond {
-                    right = Some(std::mem::take(&mut latest));
-                }
+            // Each side is taken as it is when it has reached far enough, however long the other one takes.
+            if done.left.reach < left && done.left.found.len() < above {
+                done.left = sides.left;
             }
-            if settled && (right.is_some() || !ahead.wanted) {
+            if right.is_some_and(|right| done.right.reach < right) && done.right.found.len() < beyond {
+                done.right = sides.right;
+            }
+            let wanting = |side: &Side, reach: f64, all: usize| side.reach < reach && side.found.len() < all;
+            if !wanting(&done.left, left, above) && !right.is_some_and(|right| wanting(&done.right, right, beyond)) {
                 break;
             }
         }
-        Ok((settled, ahead.wanted.then(|| right.unwrap_or(latest))))
+        Ok(done)
     }
 
     /// Appends the band.
@@ -255,23 +253,18 @@ impl Part {
     }
 }
 
-/// What a process is to find right of its shift.
+/// One process.
 #[derive(Clone, Copy)]
-struct Ahead {
-    /// The distance to the next shift.
-    width: f64,
-    /// Whether there will be one in this session.
-    wanted: bool,
-}
-
-/// What is thought of the left side of a process.
-enum Verdict {
-    /// It has what the slice needs.
-    Settled,
-    /// Go on.
-    More,
-    /// The shift has to move away from an eigenvalue.
-    TooNear,
+struct Task {
+    sigma: f64,
+    /// Eigenvalues below σ.
+    above: usize,
+    /// How far it is to see on its left side.
+    left: f64,
+    /// How far it is to see on its right side, if that is wanted.
+    right: Option<f64>,
+    /// An eigenvalue nearer than this moves the shift.
+    near: f64,
 }
 
 /// Why a part does not advance.

@@ -27,7 +27,11 @@ pub(super) enum Product {
 impl Pencil {
     /// Orders and analyses. `None` when the ordering runs out of memory.
     pub(super) fn new(matrix: &Symmetric) -> Option<Self> {
-        let matrix = matrix.select(&order(matrix)?);
+        Some(Self::ordered(matrix.select(&order(matrix)?)))
+    }
+
+    /// Analyses matrices that are in the order of elimination.
+    pub(super) fn ordered(matrix: Symmetric) -> Self {
         let symbolic = Symbolic::new(&matrix);
         let mass = match &matrix.mass {
             MassMatrix::Unit => Product::Unit,
@@ -35,7 +39,7 @@ impl Pencil {
             MassMatrix::Full(values) => by_rows(&matrix, values),
         };
         let kernel = has_kernel(&matrix);
-        Some(Self { matrix, symbolic, mass, kernel })
+        Self { matrix, symbolic, mass, kernel }
     }
 
     /// Number of rows.

@@ -74,7 +74,7 @@ pub(super) fn solve(
 }
 
 /// The rows of the connected components: those for the dense solver, and those for the sparse one.
-fn pieces(laplacian: &Laplacian) -> (Vec<Vec<u32>>, Vec<Vec<u32>>) {
+pub(super) fn pieces(laplacian: &Laplacian) -> (Vec<Vec<u32>>, Vec<Vec<u32>>) {
     let mut rows: Vec<Vec<u32>> =
         vec![Vec::new(); laplacian.component.iter().max().map_or(0, |last| *last as usize + 1)];
     for (row, &component) in laplacian.component.iter().enumerate() {

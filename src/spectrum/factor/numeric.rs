@@ -10,6 +10,9 @@ use crate::{
     },
 };
 
+/// The largest entry that M may have: errors of the counts and solves grow with it.
+const GROWTH: f64 = 1e5;
+
 /// L − σB = M D Mᵀ with a unit lower triangular M, and room to do it again for another shift.
 #[derive(Debug, Default)]
 pub(in crate::spectrum) struct Factor {
@@ -88,9 +91,9 @@ impl Factor {
         Ok(negative)
     }
 
-    /// How much larger than one the entries of M are.
-    pub(in crate::spectrum) fn growth(&self) -> f64 {
-        self.growth
+    /// Whether rounding left enough of the matrix: the entries of M amplify it.
+    pub(in crate::spectrum) fn is_sound(&self) -> bool {
+        self.growth < GROWTH
     }
 
     /// Adds the update matrix of the last child on the stack to the front.
