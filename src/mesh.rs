@@ -5,6 +5,7 @@
 //!                   └────► canonical ─► hash, and everything that is computed
 //! ```
 
+pub mod deform;
 pub mod synth;
 pub mod write;
 

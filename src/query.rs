@@ -6,7 +6,7 @@
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.
 //! - `single`: the spectrum of a mesh file on its own, from the same library.
-//! - `question`, `reasons`: what a view wants to know besides, asked for only while it is shown.
+//! - `question`, `reasons`, `examined`: what a view wants to know besides, asked for only while it is shown.
 //! - `inquiry`: a study on other threads; `host`: the owner of all of it; `trace`: what ran.
 
 pub use self::{
@@ -25,6 +25,7 @@ pub(crate) use self::{
 
 mod answer;
 mod db;
+mod examined;
 mod host;
 mod inquiry;
 mod library;

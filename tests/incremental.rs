@@ -13,7 +13,7 @@ use std::{
 
 use eigenselect::{
     dataset,
-    query::{Answer, Config, Host, ModelState, Parameter, Query, Settings, Source, Stage},
+    query::{Answer, Config, Finding, Host, ModelState, Parameter, Query, Question, Settings, Source, Stage},
     store::Store,
     watch::{Unwatched, Watch},
 };
@@ -107,6 +107,39 @@ fn each_parameter_runs_exactly_what_reads_it() {
     assert_eq!(log, with_spectra(MODELS, &LEARNING));
     // `max` changes every feature with kmax, but no spectrum.
     assert_eq!(after(&mut host, Parameter::Kmax, "25"), learning);
+}
+
+#[test]
+fn what_is_examined_runs_again_only_for_what_it_depends_on() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 8);
+    let mut host = host(&data, &cache, small(20));
+    host.run(&Unwatched).unwrap();
+    let find = |host: &mut Host, question: Question| host.find(question, &Unwatched).unwrap().unwrap();
+    let ran = |host: &Host| {
+        host.log().into_iter().filter(|query| matches!(query, Query::RetrievalRows | Query::HonestRows)).count()
+    };
+    let (retrieved, honest) = (find(&mut host, Question::Retrieval), find(&mut host, Question::Honest));
+    assert_eq!(ran(&host), 2);
+    let Finding::Honest(table) = &honest else { panic!("{honest:?}") };
+    assert!(table.rows.iter().all(|row| row.error.low <= row.error.mean && row.error.mean <= row.error.high));
+    // Nothing of it depends on the k that is read off.
+    after(&mut host, Parameter::K, "7");
+    assert_eq!(
+        (find(&mut host, Question::Retrieval), find(&mut host, Question::Honest)),
+        (retrieved.clone(), honest.clone())
+    );
+    assert_eq!(ran(&host), 0);
+    // Both do on the distance.
+    after(&mut host, Parameter::Distance, "l1");
+    assert_ne!(find(&mut host, Question::Retrieval), retrieved);
+    assert_ne!(find(&mut host, Question::Honest), honest);
+    assert_eq!(ran(&host), 2);
+    // In the next session the store has what took long, bit for bit.
+    let mut next = self::host(&data, &cache, small(20));
+    next.run(&Unwatched).unwrap();
+    assert_eq!(find(&mut next, Question::Honest), honest);
 }
 
 #[test]

@@ -206,7 +206,7 @@ pub(super) fn trace(db: &dyn Db) -> &Trace {
 }
 
 /// Leaves a computation that is no longer wanted: a kernel says `Cancelled` only once a write is waiting.
-fn leave(db: &dyn Db) -> ! {
+pub(super) fn leave(db: &dyn Db) -> ! {
     loop {
         db.unwind_if_revision_cancelled();
         std::thread::yield_now();

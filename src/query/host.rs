@@ -161,6 +161,12 @@ impl Host {
         &self.settings
     }
 
+    /// How the folder was understood, in one line.
+    #[must_use]
+    pub fn layout(&self) -> &str {
+        &self.data.layout
+    }
+
     /// Class names.
     #[must_use]
     pub fn classes(&self) -> &[String] {

@@ -8,6 +8,7 @@ use std::{
 use super::{
     Settings,
     db::{Cohort, Database, ModelFile},
+    examined,
     inquiry::Members,
     library::{self, Failure, FileAt, Library},
     reasons,
@@ -17,7 +18,7 @@ use crate::{
     dataset::Role,
     mesh::{Format, Mesh},
     study::{
-        Method,
+        Honest, Method, Retrieved,
         why::{Decisions, Neighbours, Shared, Votes},
     },
 };
@@ -36,6 +37,10 @@ pub enum Question {
     },
     /// Where the models of a class, an index, keep together.
     Shared(usize),
+    /// How well each scheme of Table 5 retrieves.
+    Retrieval,
+    /// How much of each method's error is selection bias.
+    Honest,
     /// The surface of a model, in the canonical form that its eigenfunctions live on.
     Shape(usize),
 }
@@ -51,6 +56,10 @@ pub enum Finding {
     Votes(Arc<Votes>),
     /// Of [`Question::Shared`].
     Shared(Arc<Shared>),
+    /// Of [`Question::Retrieval`].
+    Retrieval(Arc<Vec<Retrieved>>),
+    /// Of [`Question::Honest`].
+    Honest(Arc<Honest>),
     /// Of [`Question::Shape`].
     Shape(Arc<Mesh>),
 }
@@ -121,6 +130,8 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
             reasons::neighbour_rows(db, cohort, method, row(model)?).map(Finding::Neighbours)
         }
         Question::Shared(class) => reasons::shared_rows(db, cohort, class).map(Finding::Shared),
+        Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
+        Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
         Question::Shape(_) => Err("a shape is read from its file".into()),
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> 
     of_width(db, cohort, width)
 }
 
-fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
+pub(super) fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
     let knobs = Knobs::get(db);
     let choice = Choice::new(knobs.operator(db), knobs.mass(db));
     SampleKey::new(db, cohort, choice, knobs.normalisation(db), width)

@@ -43,6 +43,10 @@ pub enum Query {
     VoteRows,
     /// Where the models of a class keep together.
     SharedRows,
+    /// Table 5 and Figure 7.
+    RetrievalRows,
+    /// Nested cross-validation.
+    HonestRows,
 }
 
 /// Work done at one stage.

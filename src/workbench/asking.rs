@@ -89,6 +89,10 @@ impl State {
             let stage = match reply.question {
                 Question::Shape(_) => return false,
                 Question::Shared(_) => Stage::Features,
+                // Every method has a part in them; what is only read off a method's rows has none.
+                Question::Retrieval | Question::Honest => {
+                    return !matches!(parameter, Parameter::K | Parameter::Cost | Parameter::Sel | Parameter::Class);
+                }
                 Question::Decisions(method) | Question::Reasons { method, .. } => {
                     if method == Method::FirstK && parameter == Parameter::K {
                         return true;

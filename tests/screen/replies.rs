@@ -65,6 +65,7 @@ fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc
             .map(|shared| Finding::Shared(Arc::new(shared)))
             .ok_or_else(|| "the class has fewer than two training models".into()),
         Question::Shape(_) => Err("the file is not there".into()),
+        Question::Retrieval | Question::Honest => Err("there are no models to compare".into()),
     };
     (found, places)
 }

@@ -9,13 +9,17 @@ use super::{Cancelled, Host, Shown};
 use crate::{
     dataset::Role,
     query::{
-        Answer, Part, Question,
+        Answer, Finding, Part, Question,
         inquiry::{Inquiry, Members, Piece},
+        library::Failure,
         question::{Asking, Looking, ModelAt},
     },
     selection::Cost,
     watch::Watch,
 };
+
+/// So often a run looks whether it was cancelled.
+const TICK: Duration = Duration::from_millis(5);
 
 impl Host {
     /// The models whose spectra are there; none while they cannot make a study (two training models at least).
@@ -42,6 +46,30 @@ impl Host {
     /// Prepares a question about `members` for another thread.
     pub(crate) fn ask(&self, members: Members, question: Question) -> Asking {
         Asking::new(self.database.clone(), members, self.settings.clone(), question)
+    }
+
+    /// Answers a question about the models that have been studied, as [`Host::run`] leaves them.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once the watch says so; within, why there is nothing to be found.
+    pub fn find(&mut self, question: Question, watch: &dyn Watch) -> Result<Result<Finding, Failure>, Cancelled> {
+        let Some(members) = self.members() else { return Ok(Err("there are no models to compare".into())) };
+        let asking = self.ask(members, question);
+        let (sender, replies) = mpsc::channel();
+        let thread = std::thread::spawn(move || sender.send(asking.answer()));
+        let reply = loop {
+            match replies.recv_timeout(TICK) {
+                Err(mpsc::RecvTimeoutError::Timeout) if watch.cancelled() => {
+                    self.abandon();
+                    return Err(Cancelled);
+                }
+                Err(mpsc::RecvTimeoutError::Timeout) => {}
+                Ok(reply) => break reply,
+                Err(mpsc::RecvTimeoutError::Disconnected) => break None,
+            }
+        };
+        let _ = thread.join();
+        Ok(reply.map_or_else(|| Err("internal error in the study, please report it".into()), |reply| reply.finding))
     }
 
     /// Prepares the reading of a model's surface on another thread. None when there is no such model.
@@ -75,7 +103,6 @@ impl Host {
         if self.stopped {
             self.resume();
         }
-        let tick = Duration::from_millis(5);
         watch.progress(0, self.rows.len());
         while !self.complete() {
             if watch.cancelled() {
@@ -83,7 +110,7 @@ impl Host {
                 self.save();
                 return Err(Cancelled);
             }
-            let heard = self.news.as_ref().and_then(|news| news.recv_timeout(tick).ok());
+            let heard = self.news.as_ref().and_then(|news| news.recv_timeout(TICK).ok());
             if let Some(news) = heard
                 && self.hear(news)
             {
@@ -100,7 +127,7 @@ impl Host {
                 });
             });
             loop {
-                match pieces.recv_timeout(tick) {
+                match pieces.recv_timeout(TICK) {
                     Ok(piece) => self.learn(&members, piece),
                     Err(mpsc::RecvTimeoutError::Disconnected) => break,
                     Err(mpsc::RecvTimeoutError::Timeout) if watch.cancelled() => {

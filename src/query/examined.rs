@@ -1,0 +1,77 @@
+//! The functions that examine what the study selected: retrieval, and how much of a figure is selection bias.
+
+use std::sync::Arc;
+
+use super::{
+    db::{Cohort, Db, Knobs, leave, sample, trace},
+    library::Failure,
+    rows::{boost_rows, climb_rows, first_k_rows, of_width},
+    trace::Query,
+};
+use crate::{
+    metrics::{Features, Sample},
+    selection::Cost,
+    store::Key,
+    study::{self, Draws, Honest, Learner, Plan, Retrieved, Sources},
+};
+
+/// Increase when [`study::honest`] would say something else of the same sample.
+const EXAMINER: u64 = 1;
+
+/// What every scheme of Table 5 retrieves.
+#[salsa::tracked(returns(clone), lru = 8)]
+pub(crate) fn retrieval_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Vec<Retrieved>>, Failure> {
+    let knobs = Knobs::get(db);
+    let (first_k, boosted) = (first_k_rows(db, cohort)?, boost_rows(db, cohort)?);
+    let (climb_error, climb_adr) = (climb_rows(db, cohort, Cost::Error)?, climb_rows(db, cohort, Cost::Adr)?);
+    // Random subsets are of the first kmax features, so the sample has no more.
+    let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
+    let strong = &boosted.classes;
+    let sources = Sources { first_k: &first_k, climb_error: &climb_error, climb_adr: &climb_adr, strong };
+    let found = study::retrieval(&sample, knobs.distance(db), sources, Draws::default(), db.revoked());
+    trace(db).executed(Query::RetrievalRows);
+    Ok(Arc::new(found.unwrap_or_else(|_| leave(db))))
+}
+
+/// Every method by the paper's protocol and by nested cross-validation. It takes seconds, so the store keeps it.
+#[salsa::tracked(returns(clone), lru = 8)]
+pub(crate) fn honest_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Honest>, Failure> {
+    let knobs = Knobs::get(db);
+    let (distance, plan) = (knobs.distance(db), Plan::default());
+    let rounds = knobs.rounds(db) as u32;
+    let methods = Learner::DEFAULT.map(|learner| match learner {
+        Learner::Boost(_) => Learner::Boost(rounds),
+        other => other,
+    });
+    let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
+    let how = format!("{distance:?} {plan:?} {methods:?}");
+    let key = Key::new("honest").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
+    let store = db.library().store();
+    trace(db).executed(Query::HonestRows);
+    if let Some(kept) = store.get::<Honest>(&key) {
+        return Ok(Arc::new(kept));
+    }
+    let found = study::honest(&sample, distance, &methods, plan, db.revoked()).unwrap_or_else(|_| leave(db));
+    store.put(&key, &found);
+    Ok(Arc::new(found))
+}
+
+/// blake3 over all features and labels.
+fn digest(sample: &Sample) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    let mut side = |features: &Features, labels: &[u32]| {
+        hasher.update(&(features.rows() as u64).to_le_bytes()).update(&(features.cols() as u64).to_le_bytes());
+        for row in 0..features.rows() {
+            for value in features.row(row) {
+                hasher.update(&value.to_bits().to_le_bytes());
+            }
+        }
+        for label in labels {
+            hasher.update(&label.to_le_bytes());
+        }
+    };
+    side(&sample.train, &sample.train_labels);
+    side(&sample.query, &sample.query_labels);
+    hasher.update(&(sample.classes as u64).to_le_bytes());
+    *hasher.finalize().as_bytes()
+}
