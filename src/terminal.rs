@@ -20,7 +20,7 @@ use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
-    workbench::{Command, State, Update, worker::Worker},
+    workbench::{Command, State, Update, shape::Style, worker::Worker},
 };
 
 mod caps;
@@ -101,7 +101,10 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     let guard = Guard::enter(queue.clone()).map_err(TerminalError::io("set up"))?;
     let mut screen = Screen::new(guard, opening.look).map_err(TerminalError::io("set up"))?;
     let input = Input::begin(queue).map_err(TerminalError::io("read"))?;
-    let state = State::new(opening.title, opening.settings);
+    let mut state = State::new(opening.title, opening.settings);
+    if opening.look.ascii {
+        state.style = Style::Plain;
+    }
     let outcome = session::run(state, &engine, &mut screen, &inbox);
     // What is typed from now on belongs to the shell, which the user sees before the engine puts its things in order.
     drop(input);

@@ -17,9 +17,12 @@
 //! Colours are the terminal's own sixteen, and none of them carries a meaning alone: there is always a mark, a word or
 //! an attribute beside it ([`Look`]).
 
-pub use self::{look::Look, text::clean};
 use self::{look::Role, pane::Pane};
-use crate::workbench::{State, View};
+pub use self::{
+    look::{Look, Shades},
+    text::clean,
+};
+use crate::workbench::{State, View, shape::TALL};
 use ratatui::{Frame, layout::Rect};
 
 mod ascii;
@@ -41,6 +44,7 @@ mod panel;
 mod pipeline;
 mod plot;
 mod selection;
+mod shape;
 mod tables;
 mod text;
 
@@ -71,15 +75,19 @@ fn too_small(pane: &mut Pane<'_>) {
 
 fn screen(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
-    let tall = rest.height >= 14;
+    let tall = rest.height >= TALL;
     header::draw(state, &mut pane.part(pane::cut_top(&mut rest, 1)));
     if tall {
         header::tabs(state, &mut pane.part(pane::cut_top(&mut rest, 1)));
     }
     let foot = pane::cut_bottom(&mut rest, if tall { 2 } else { 1 });
     footer::draw(state, &mut pane.part(foot));
-    let beside = pane.width() >= BESIDE.0 && pane.height() >= BESIDE.1;
-    if beside {
+    if state.view == View::Shape || state.alone {
+        if tall {
+            let rule = pane::cut_top(&mut rest, 1);
+            pane.rule(rule.y);
+        }
+    } else if pane.width() >= BESIDE.0 && pane.height() >= BESIDE.1 {
         let rule = pane::cut_top(&mut rest, 1);
         pane.rule(rule.y);
         let wide = if pane.width() >= 120 { 34 } else { 28 };
@@ -112,5 +120,6 @@ fn view(state: &State, pane: &mut Pane<'_>) {
         View::Models => models::draw(state, pane),
         View::Confusion => confusion::draw(state, pane),
         View::Neighbours => neighbours::draw(state, pane),
+        View::Shape => shape::draw(state, pane),
     }
 }

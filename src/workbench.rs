@@ -11,7 +11,7 @@
 
 pub use self::{
     action::{Action, Effect, Leave},
-    asking::{ALL_FIGURES, Answered, Replies},
+    asking::{ALL_FIGURES, Answered, Replies, first_pictured, pictured},
     entry::Entry,
     history::History,
     message::{Command, Update},
@@ -30,6 +30,7 @@ pub mod keymap;
 mod message;
 mod models;
 pub mod parameters;
+pub mod shape;
 mod state;
 mod update;
 mod why;

@@ -198,7 +198,7 @@ fn ctrl_z_gives_the_terminal_to_the_shell_and_fg_takes_it_again() {
     seat.press("echo sto''pped\n");
     seat.until_shown("stopped");
     seat.press("fg\n");
-    seat.until("screen again", |screen| screen.alternate_screen() && screen.contents().contains("1 Overview"));
+    seat.until("screen again", |screen| screen.alternate_screen() && screen.contents().contains("2 Curves"));
     seat.press("q");
     seat.until("shell again", |screen| !screen.alternate_screen());
     seat.press("echo en''ded $?\n");

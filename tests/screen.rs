@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use eigenselect::{
     query::{Answer, Parameter},
-    ui::{self, Look},
-    workbench::{Action, Figure, Filter, State, View, keymap, update},
+    ui::{self, Look, Shades},
+    workbench::{Action, Figure, Filter, State, View, keymap, shape::Style, update},
 };
 use ratatui::{
     Terminal,
@@ -92,6 +92,45 @@ fn the_other_faces_of_the_explaining_views() {
     let mut state = shown(sample::state(sample::full()), View::Selection);
     state.figure = Figure::Shared;
     compare("Shared-80x24", &drawn(&replies::served(state), SMALL));
+}
+
+#[test]
+fn a_shape_is_drawn_in_every_style() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Resize(SMALL.0, SMALL.1));
+    let state = shown(state, View::Shape);
+    let styled = |style: Style| replies::served(State { style, ..state.clone() });
+    for (name, style, look) in [
+        ("blocks", Style::Blocks, Look { shades: Shades::All, ..Look::default() }),
+        ("ascii", Style::Plain, Look { ascii: true, ..Look::default() }),
+        ("light", Style::Dots, Look { light: true, ..Look::default() }),
+    ] {
+        compare(&format!("Shape-{name}"), &text(&buffer(&styled(style), look, SMALL)));
+    }
+    // More colours than sixteen are used for shapes alone, and where they are offered.
+    let colours = |shades: Shades| {
+        let look = Look { shades, ..Look::default() };
+        let drawn = buffer(&state, look, SMALL);
+        let fine = |cell: &&ratatui::buffer::Cell| matches!(cell.fg, Color::Rgb(..) | Color::Indexed(16..));
+        drawn.content.iter().filter(fine).count()
+    };
+    assert_eq!(colours(Shades::Few), 0);
+    assert!(colours(Shades::Many) > 50 && colours(Shades::All) > 50);
+}
+
+#[test]
+fn turning_a_shape_shows_it_from_there_once_it_is_painted() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Resize(SMALL.0, SMALL.1));
+    let before = shown(state, View::Shape);
+    let mut turned = before.clone();
+    update(&mut turned, Action::Orbit(1, 0));
+    assert_eq!(drawn(&turned, SMALL), drawn(&before, SMALL), "the screen does not wait for the picture");
+    let turned = replies::served(turned);
+    assert_ne!(drawn(&turned, SMALL), drawn(&before, SMALL));
+    let mut back = turned;
+    update(&mut back, Action::FirstLook);
+    assert_eq!(drawn(&replies::served(back), SMALL), drawn(&before, SMALL));
 }
 
 #[test]
@@ -224,7 +263,7 @@ fn what_is_stale_is_faint_and_says_so() {
 
 #[test]
 fn without_colour_nothing_is_coloured() {
-    let look = Look { colour: false, ascii: false };
+    let look = Look { colour: false, ..Look::default() };
     for view in View::ALL {
         let buffer = buffer(&shown(sample::state(sample::partial()), view), look, SMALL);
         assert!(buffer.content.iter().all(|cell| cell.fg == Color::Reset && cell.bg == Color::Reset));
@@ -275,7 +314,7 @@ fn no_size_panics() {
             }
         }
         for size in [(300, 100), (300, 1), (1, 100), (120, 17), (200, 12)] {
-            buffer(&state, Look { ascii: true, colour: false }, size);
+            buffer(&state, Look { ascii: true, colour: false, ..Look::default() }, size);
         }
     }
 }

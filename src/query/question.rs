@@ -132,7 +132,7 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
         Question::Shared(class) => reasons::shared_rows(db, cohort, class).map(Finding::Shared),
         Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
         Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
-        Question::Shape(_) => Err("a shape is read from its file".into()),
+        Question::Shape(_) => Err("a surface is read from its file".into()),
     }
 }
 

@@ -7,10 +7,10 @@ use std::{
 };
 
 use super::TerminalError;
-use crate::ui::Look;
+use crate::ui::{Look, Shades};
 
 /// What the environment says of the terminal: no colour with `NO_COLOR` (<https://no-color.org>), ASCII where the
-/// locale is not UTF-8.
+/// locale is not UTF-8, more than sixteen colours where `COLORTERM` or `TERM` say so.
 #[must_use]
 pub fn look() -> Look {
     from(|name| env::var_os(name))
@@ -21,7 +21,21 @@ fn from(variable: impl Fn(&str) -> Option<OsString>) -> Look {
     // As setlocale(3) reads them: the first one that is set decides.
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(set);
     let locale = locale.map(|locale| locale.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    Look { colour: set("NO_COLOR").is_none(), ascii: !(locale.contains("utf-8") || locale.contains("utf8")) }
+    let lower = |name: &str| set(name).map(|value| value.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let shades = match (lower("COLORTERM").as_str(), lower("TERM").as_str()) {
+        ("truecolor" | "24bit", _) => Shades::All,
+        (_, term) if term.ends_with("-direct") => Shades::All,
+        (_, term) if term.contains("256color") => Shades::Many,
+        _ => Shades::Few,
+    };
+    // The last number is the ground's, as rxvt and those after it say it: 7 and 9 to 15 are light.
+    let ground = lower("COLORFGBG").rsplit(';').next().and_then(|ground| ground.parse::<u8>().ok());
+    Look {
+        colour: set("NO_COLOR").is_none(),
+        ascii: !(locale.contains("utf-8") || locale.contains("utf8")),
+        shades,
+        light: ground.is_some_and(|ground| ground == 7 || (9..=15).contains(&ground)),
+    }
 }
 
 /// Fails where no screen can be drawn.
@@ -53,6 +67,15 @@ mod tests {
         assert!(with(&[("LANG", "en_US.UTF-8"), ("LC_ALL", "C")]).ascii);
         assert!(!with(&[("LANG", "C.UTF-8"), ("LC_ALL", "")]).ascii, "what is empty is not set");
         assert!(with(&[("LANG", "de_CH.ISO-8859-1")]).ascii);
+    }
+
+    #[test]
+    fn colours_and_ground_are_taken_from_what_is_set() {
+        assert_eq!(with(&[("TERM", "xterm")]).shades, Shades::Few);
+        assert_eq!(with(&[("TERM", "tmux-256color")]).shades, Shades::Many);
+        assert_eq!(with(&[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")]).shades, Shades::All);
+        assert!(with(&[("COLORFGBG", "0;default;15")]).light);
+        assert!(!with(&[("COLORFGBG", "15;0")]).light && !with(&[("COLORFGBG", "x")]).light && !with(&[]).light);
     }
 
     #[test]

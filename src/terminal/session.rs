@@ -145,6 +145,11 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Reply(reply));
             }
+            Event::Update(Update::Rescanned) => self.apply(Action::Rescanned),
+            Event::Update(Update::Picture(scene, picture)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Picture(scene, picture));
+            }
             Event::Update(Update::Fatal(reason)) => {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Fatal(reason));

@@ -104,7 +104,7 @@ mod tests {
 
     fn drawn(dots: &Dots, ascii: bool) -> String {
         let mut buffer = Buffer::empty(Rect::new(0, 0, 3, 1));
-        dots.draw(&mut Pane::new(&mut buffer, Rect::new(0, 0, 3, 1), Look { ascii, colour: true }), 0, 0);
+        dots.draw(&mut Pane::new(&mut buffer, Rect::new(0, 0, 3, 1), Look { ascii, ..Look::default() }), 0, 0);
         buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect()
     }
 

@@ -13,11 +13,27 @@ pub struct Look {
     pub colour: bool,
     /// Only ASCII may be used.
     pub ascii: bool,
+    /// How many colours there are for shades, where colours may be used.
+    pub shades: Shades,
+    /// The ground is known to be light.
+    pub light: bool,
+}
+
+/// How many colours there are beyond the terminal's sixteen. They are used for pictures of shapes alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shades {
+    /// None.
+    #[default]
+    Few,
+    /// The palette of 256.
+    Many,
+    /// All of them.
+    All,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { colour: true, ascii: false }
+        Self { colour: true, ascii: false, shades: Shades::Few, light: false }
     }
 }
 
@@ -84,7 +100,7 @@ mod tests {
 
     #[test]
     fn without_colour_there_is_none() {
-        let look = Look { colour: false, ascii: false };
+        let look = Look { colour: false, ..Look::default() };
         for role in [Role::Train, Role::Query, Role::Good, Role::Warn, Role::Bad, Role::Class(3)] {
             assert_eq!(look.style(role).fg, None);
             assert_ne!(Look::default().style(role).fg, None);

@@ -21,12 +21,12 @@ use super::{
     number,
     pane::{self, Pane},
     plot::{Axis, Plot, Series},
-    text,
+    shape, text,
 };
 use crate::{
     dataset::Role as Side,
     query::{Answer, ModelRow, ModelState, Source},
-    workbench::{Filter, Sort, State},
+    workbench::{Filter, Sort, State, pictured, shape::THUMB},
 };
 
 /// The view.
@@ -52,6 +52,10 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         }
     }
     if let Some(model) = state.model() {
+        if !pictured(state).is_empty() && rest.height >= 2 * THUMB.1 {
+            let below = pane::cut_bottom(&mut rest, THUMB.1 + 1);
+            shape::strip(state, &[model], None, &mut pane.part(below));
+        }
         details(&state.answer, &state.answer.models[model], &mut pane.part(rest));
     }
 }

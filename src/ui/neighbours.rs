@@ -12,7 +12,7 @@
 //! ```
 //!
 //! For AdaBoost the classes stand in the place of the neighbours, with the sum S of their weak classifiers. The lower
-//! part shows the terms or the two spectra, on large screens both.
+//! part shows the terms or the two spectra, on large screens both, and small pictures of the models.
 
 use ratatui::layout::Rect;
 
@@ -23,13 +23,13 @@ use super::{
     names::{self, Names},
     number,
     pane::{self, Pane},
-    text,
+    shape, text,
 };
 use crate::{
     dataset::Role as Member,
     query::{Finding, ModelRow, Question},
     study::why::{Neighbours, Votes},
-    workbench::{Answered, State, Why},
+    workbench::{Answered, State, Why, first_pictured, pictured, shape::THUMB},
 };
 
 mod terms;
@@ -66,6 +66,13 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let at = place(state, reasons);
+    let pictured = pictured(state);
+    if !pictured.is_empty() {
+        let below = pane::cut_bottom(&mut rest, THUMB.1 + 1);
+        let count = if let Reasons::Neighbours(found, _) = reasons { found.found.len() } else { 0 };
+        let chosen = (count > 0).then(|| 1 + at - first_pictured(state, count));
+        shape::strip(state, &pictured, chosen, &mut pane.part(below));
+    }
     if rest.width >= 100 {
         let half = rest.width * 2 / 5;
         let list = pane::cut_left(&mut rest, half);

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::{Command, View};
+use super::{
+    Command, View,
+    shape::{Picture, Scene},
+};
 use crate::query::{Answer, Parameter, Reply};
 
 /// Something that happened: a key's meaning, or news.
@@ -86,6 +89,18 @@ pub enum Action {
     Open,
     /// Back to what was looked at before.
     Back,
+    /// Turn the shape to the right and upwards, by steps.
+    Orbit(i32, i32),
+    /// Go nearer to the shape, or farther, by steps.
+    Approach(i32),
+    /// See the shape as at first.
+    FirstLook,
+    /// Draw shapes with dots or with blocks.
+    ToggleStyle,
+    /// Show the model looked at as a shape.
+    ShowShape,
+    /// Give the view the whole screen, or no longer.
+    ToggleAlone,
     /// The model before or after, wherever a model is shown.
     Step(isize),
     /// A character typed into the entry.
@@ -106,6 +121,10 @@ pub enum Action {
     Answer(Arc<Answer>),
     /// An answer of the engine to a question.
     Reply(Arc<Reply>),
+    /// The files were looked at again.
+    Rescanned,
+    /// A scene that was painted.
+    Picture(Scene, Arc<Picture>),
     /// The engine cannot go on.
     Fatal(String),
     /// Something the user should know, in one line.

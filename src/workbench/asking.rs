@@ -5,7 +5,10 @@
 
 use std::sync::Arc;
 
-use super::{Figure, State, View, parameters};
+use super::{
+    Figure, State, View, explore, parameters,
+    shape::{self, Camera, Scene},
+};
 use crate::{
     query::{Finding, Parameter, Question, Reply, Stage},
     study::Method,
@@ -37,6 +40,11 @@ impl Replies {
         self.0.iter().rev().find(|reply| reply.question == *question)
     }
 
+    /// Forgets all surfaces.
+    pub fn clear_surfaces(&mut self) {
+        self.0.retain(|kept| !matches!(kept.question, Question::Shape(_)));
+    }
+
     /// Forgets everything: the models have other places now.
     pub fn clear(&mut self) {
         self.0.clear();
@@ -53,6 +61,65 @@ pub fn questions(state: &State) -> Vec<Question> {
         }
         View::Confusion => vec![Question::Decisions(method)],
         View::Neighbours => state.model().map(|model| Question::Reasons { method, model }).into_iter().collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The models whose surfaces are to be read: those shown, without those that are there or on their way.
+#[must_use]
+pub fn surfaces(state: &State) -> Vec<usize> {
+    let shown = match state.view {
+        View::Models | View::Neighbours => pictured(state),
+        View::Shape => state.model().into_iter().collect(),
+        _ => Vec::new(),
+    };
+    let missing =
+        |model: &usize| state.replies.find(&Question::Shape(*model)).is_none() && !state.looked_for.contains(model);
+    shown.into_iter().filter(missing).collect()
+}
+
+/// The models of which there are small pictures: the one looked at, and in the view of neighbours those around the
+/// cursor.
+#[must_use]
+pub fn pictured(state: &State) -> Vec<usize> {
+    let room = shape::thumbs(state.size);
+    let Some(model) = state.model().filter(|_| room > 0) else { return Vec::new() };
+    if state.view != View::Neighbours {
+        return vec![model];
+    }
+    let models = explore::neighbours(state).map_or_else(Vec::new, |(_, models)| models);
+    let first = first_pictured(state, models.len());
+    std::iter::once(model).chain(models.into_iter().skip(first).take(room - 1)).collect()
+}
+
+/// The place of the first neighbour that has a small picture.
+#[must_use]
+pub fn first_pictured(state: &State, neighbours: usize) -> usize {
+    let room = shape::thumbs(state.size).saturating_sub(1);
+    let at = state.why.neighbour.min(neighbours.saturating_sub(1));
+    at.saturating_sub(room.saturating_sub(1))
+}
+
+/// Everything that the screen as it is wants painted: what can be, of the surfaces that are there.
+#[must_use]
+pub fn scenes(state: &State) -> Vec<Scene> {
+    let mesh = |model: usize| match &state.replies.find(&Question::Shape(model))?.finding {
+        Ok(Finding::Shape(mesh)) => Some(Arc::clone(mesh)),
+        _ => None,
+    };
+    let scene = |model: usize, camera: Camera, cells: (u16, u16)| {
+        Some(Scene { model, mesh: mesh(model)?, function: None, camera, cells, style: state.style })
+    };
+    match state.view {
+        View::Shape => {
+            let whole = state.model().and_then(|model| scene(model, state.camera, shape::cells(state.size)));
+            whole.into_iter().collect()
+        }
+        View::Models | View::Neighbours => {
+            // Small pictures keep their distance, and turn with the large one.
+            let camera = Camera { zoom: 0, ..state.camera };
+            pictured(state).into_iter().filter_map(|model| scene(model, camera, shape::THUMB)).collect()
+        }
         _ => Vec::new(),
     }
 }

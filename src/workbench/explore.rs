@@ -1,6 +1,6 @@
 //! Going from a figure to the models behind it, and back.
 
-use super::{Action, Answered, Only, State, View, Why, update, why::Matrix};
+use super::{Action, Answered, Only, State, View, Why, shape::Camera, update, why::Matrix};
 use crate::query::{Finding, Question};
 
 /// So many steps back are remembered.
@@ -23,6 +23,15 @@ pub(super) fn look(state: &mut State, action: &Action) {
         Action::ToggleOverlay => state.why.overlaid = !state.why.overlaid,
         Action::Cell(down, right) => state.why.shift(*down, *right, classes),
         Action::NextConfusion => next_confusion(state),
+        Action::Orbit(right, up) => state.camera.turn(*right, *up),
+        Action::Approach(steps) => state.camera.approach(*steps),
+        Action::FirstLook => state.camera = Camera::default(),
+        Action::ToggleStyle => state.style = state.style.turned(),
+        Action::ToggleAlone => state.alone = !state.alone,
+        Action::ShowShape => {
+            remember(state);
+            update::show(state, View::Shape);
+        }
         Action::Open => open(state),
         Action::Back => back(state),
         Action::Step(by) => {
@@ -42,6 +51,9 @@ fn change(state: &mut State, change: impl FnOnce(&mut super::ModelList)) {
 /// Forgets everything that names models by their place.
 pub(super) fn forget(state: &mut State) {
     state.replies.clear();
+    state.pictures.clear();
+    state.looked_for.clear();
+    state.scenes.clear();
     state.trail.clear();
     state.models.only = None;
     state.why = Why { neighbour: 0, ..state.why };

@@ -75,7 +75,7 @@ pub enum Context {
 
 impl Context {
     /// All contexts, in the order of the help.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Views,
         Self::In(View::Overview),
         Self::In(View::Curves),
@@ -85,6 +85,7 @@ impl Context {
         Self::In(View::Models),
         Self::In(View::Confusion),
         Self::In(View::Neighbours),
+        Self::In(View::Shape),
         Self::Entry,
         Self::Help,
         Self::Always,

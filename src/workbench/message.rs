@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::shape::{Picture, Scene};
 use crate::query::{Answer, Question, Reply, Settings};
 
 /// An order to the engine.
@@ -11,6 +12,10 @@ pub enum Command {
     Set(Settings),
     /// Answer these questions, now and whenever their answers change; they replace the questions before.
     Ask(Vec<Question>),
+    /// Read the surfaces of these models, places in the answer's list.
+    Look(Vec<usize>),
+    /// Paint these scenes; they replace those before.
+    Paint(Vec<Scene>),
     /// Look at the files again.
     Rescan,
     /// Stop solving spectra; what is there stays.
@@ -28,6 +33,10 @@ pub enum Update {
     Answer(Arc<Answer>),
     /// An answer to a question.
     Reply(Arc<Reply>),
+    /// The files were looked at again: surfaces may be others now.
+    Rescanned,
+    /// A scene that was painted.
+    Picture(Scene, Arc<Picture>),
     /// The engine cannot go on, and why.
     Fatal(String),
 }

@@ -2,7 +2,10 @@
 
 use std::{collections::BTreeSet, sync::Arc};
 
-use super::{Entry, History, ModelList, Replies, Why, parameters};
+use super::{
+    Entry, History, ModelList, Replies, Why, parameters,
+    shape::{Camera, Pictures, Scene, Style},
+};
 use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
 
 /// A page of the screen.
@@ -25,11 +28,13 @@ pub enum View {
     Confusion,
     /// Why one model is put where it is.
     Neighbours,
+    /// One model as a shape.
+    Shape,
 }
 
 impl View {
     /// All of them, in the order of their keys.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Overview,
         Self::Curves,
         Self::Tables,
@@ -38,6 +43,7 @@ impl View {
         Self::Models,
         Self::Confusion,
         Self::Neighbours,
+        Self::Shape,
     ];
 
     /// Its name on the tab.
@@ -52,6 +58,7 @@ impl View {
             Self::Models => "Models",
             Self::Confusion => "Confusion",
             Self::Neighbours => "Neighbours",
+            Self::Shape => "Shape",
         }
     }
 
@@ -138,6 +145,18 @@ pub struct State {
     pub asked: Vec<Question>,
     /// What it answered.
     pub replies: Replies,
+    /// The models whose surfaces are being read for it.
+    pub looked_for: BTreeSet<usize>,
+    /// Where shapes are seen from.
+    pub camera: Camera,
+    /// How shapes become characters.
+    pub style: Style,
+    /// What was wanted painted.
+    pub scenes: Vec<Scene>,
+    /// What was painted.
+    pub pictures: Pictures,
+    /// The view has the screen for itself, without the parameters.
+    pub alone: bool,
     /// Lines by which the view is scrolled down; a view stops at its own end.
     pub scroll: usize,
     /// Solving was stopped by the user.
@@ -172,6 +191,12 @@ impl State {
             trail: Vec::new(),
             asked: Vec::new(),
             replies: Replies::default(),
+            looked_for: BTreeSet::new(),
+            camera: Camera::default(),
+            style: Style::default(),
+            scenes: Vec::new(),
+            pictures: Pictures::default(),
+            alone: false,
             scroll: 0,
             stopped: false,
             notice: None,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Action, Command, Effect, Entry, Figure, Leave, Notice, State, View, asking, explore, parameters};
-use crate::query::{Answer, Parameter, Settings};
+use crate::query::{Answer, Parameter, Question, Settings};
 
 /// Lets an action happen. Returns what must now happen outside; never waits.
 pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
@@ -14,13 +14,30 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
         state.asked.clone_from(&questions);
         effects.push(Effect::Send(Command::Ask(questions)));
     }
+    let surfaces = asking::surfaces(state);
+    if !surfaces.is_empty() {
+        state.looked_for.extend(&surfaces);
+        effects.push(Effect::Send(Command::Look(surfaces)));
+    }
+    let scenes = asking::scenes(state);
+    if scenes != state.scenes {
+        let missing: Vec<_> = scenes.iter().filter(|scene| !state.pictures.has(scene)).cloned().collect();
+        state.scenes = scenes;
+        effects.push(Effect::Send(Command::Paint(missing)));
+    }
     effects
 }
 
 fn happen(state: &mut State, action: Action) -> Vec<Effect> {
     if !matches!(
         action,
-        Action::Answer(_) | Action::Reply(_) | Action::Resize(..) | Action::Report(_) | Action::Fatal(_)
+        Action::Answer(_)
+            | Action::Reply(_)
+            | Action::Picture(..)
+            | Action::Rescanned
+            | Action::Resize(..)
+            | Action::Report(_)
+            | Action::Fatal(_)
     ) {
         state.notice = None;
     }
@@ -46,7 +63,22 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Redo => return travel(state, false),
         Action::Commit => return commit(state),
         Action::Answer(answer) => receive(state, answer),
-        Action::Reply(reply) => state.replies.take(reply),
+        Action::Reply(reply) => {
+            if let Question::Shape(model) = reply.question {
+                state.looked_for.remove(&model);
+            }
+            state.replies.take(reply);
+        }
+        Action::Rescanned => {
+            state.replies.clear_surfaces();
+            state.looked_for.clear();
+        }
+        Action::Picture(scene, picture) => {
+            // A picture of a scene that is no longer wanted would replace a newer one.
+            if state.scenes.contains(&scene) {
+                state.pictures.take(scene, picture);
+            }
+        }
         Action::Fatal(reason) => state.fatal = Some(reason),
         Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
@@ -155,7 +187,7 @@ fn furthest(state: &State) -> usize {
         View::Tables => state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| t.rows.len() + 4).sum(),
         View::Pipeline => state.answer.warnings.len(),
         View::Selection => state.answer.marks.value.iter().flat_map(|m| m.iter()).map(Vec::len).max().unwrap_or(0),
-        View::Overview | View::Curves | View::Models | View::Confusion | View::Neighbours => 0,
+        View::Overview | View::Curves | View::Models | View::Confusion | View::Neighbours | View::Shape => 0,
     }
 }
 

@@ -6,12 +6,12 @@
 use std::{
     panic::{AssertUnwindSafe, catch_unwind},
     path::PathBuf,
-    sync::{Arc, mpsc},
+    sync::{Arc, Mutex, PoisonError, mpsc},
     thread::JoinHandle,
     time::{Duration, Instant},
 };
 
-use super::{Command, Update};
+use super::{Command, Update, shape::Painter};
 use crate::{
     dataset::{self, DataSet},
     query::{Config, Host, Members, News, Piece, Question, Reply, Settings},
@@ -47,12 +47,15 @@ enum Message {
     Over(u64),
     /// The answer to a question of the asking of that number.
     Reply(u64, Reply),
+    /// A surface that was read.
+    Surface(Reply),
 }
 
 /// The worker. Dropping it asks the thread to end and does not wait for a long computation.
 #[derive(Debug)]
 pub struct Worker {
     messages: mpsc::Sender<Message>,
+    painter: Painter,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -69,11 +72,16 @@ const LOOK: Duration = Duration::from_millis(400);
 const PROGRESS: Duration = Duration::from_millis(100);
 
 impl Worker {
-    /// Opens the data set on a thread of its own and goes to work. `notify` is called on that thread.
+    /// Opens the data set on a thread of its own and goes to work. `notify` is called on that thread and on the one
+    /// that paints, never on both at once.
     ///
     /// # Errors
     /// When the system has no thread to give.
     pub fn spawn(setup: Setup, notify: impl Fn(Update) + Send + 'static) -> std::io::Result<Self> {
+        // Two threads have news to tell, one at a time.
+        let shared = Arc::new(Mutex::new(notify));
+        let (notify, paint) = (one_at_a_time(&shared), one_at_a_time(&shared));
+        let painter = Painter::start(move |scene, picture| paint(Update::Picture(scene, picture)))?;
         let (messages, inbox) = mpsc::channel();
         let outbox = messages.clone();
         let thread = std::thread::Builder::new().name("worker".into()).spawn(move || {
@@ -85,11 +93,15 @@ impl Worker {
                 notify(Update::Fatal("internal error in the worker, please report it".into()));
             }
         })?;
-        Ok(Self { messages, thread: Some(thread) })
+        Ok(Self { messages, painter, thread: Some(thread) })
     }
 
     /// Passes a command on; never waits.
     pub fn send(&self, command: Command) {
+        if let Command::Paint(scenes) = command {
+            self.painter.paint(scenes);
+            return;
+        }
         // Without a receiver the worker has told why it ended.
         let _ = self.messages.send(Message::Command(command));
     }
@@ -105,6 +117,12 @@ impl Drop for Worker {
             }
         }
     }
+}
+
+/// Calls what is shared, waiting while another thread does.
+fn one_at_a_time<T: Fn(Update)>(shared: &Arc<Mutex<T>>) -> impl Fn(Update) + use<T> {
+    let shared = Arc::clone(shared);
+    move |update| (*shared.lock().unwrap_or_else(PoisonError::into_inner))(update)
 }
 
 /// The worker's state.
@@ -178,6 +196,7 @@ impl<'a> Desk<'a> {
                 match message {
                     Message::Command(Command::Set(settings)) => newest = Some(settings),
                     Message::Command(Command::Ask(questions)) => asked = Some(questions),
+                    Message::Command(Command::Look(models)) => self.look(&models),
                     Message::Command(Command::Quit) => {
                         self.host.save();
                         return;
@@ -193,6 +212,7 @@ impl<'a> Desk<'a> {
                     Message::Piece(number, piece) => self.learn(number, piece),
                     Message::Over(number) => self.over(number),
                     Message::Reply(number, reply) => self.reply(number, reply),
+                    Message::Surface(reply) => (self.notify)(Update::Reply(Arc::new(reply))),
                 }
             }
             if let Some(settings) = newest
@@ -224,6 +244,7 @@ impl<'a> Desk<'a> {
             Command::Rescan => match self.setup.open() {
                 Ok(data) => {
                     self.host.update(data);
+                    (self.notify)(Update::Rescanned);
                     self.saved = false;
                     self.restudy();
                 }
@@ -231,7 +252,7 @@ impl<'a> Desk<'a> {
             },
             Command::Stop => self.host.stop(),
             Command::Resume => self.host.resume(),
-            Command::Set(_) | Command::Ask(_) | Command::Quit => {}
+            Command::Set(_) | Command::Ask(_) | Command::Look(_) | Command::Paint(_) | Command::Quit => {}
         }
         self.publish_within(GRACE);
     }
@@ -293,21 +314,30 @@ impl<'a> Desk<'a> {
                 let _ = outbox.send(Message::Reply(number, reply));
             };
             let thread = std::thread::Builder::new().name("question".into());
-            let begun = if let Question::Shape(model) = question {
-                let Some(looking) = self.host.look(*model) else { continue };
-                thread.spawn(move || tell(looking.answer()))
-            } else {
-                let Some(members) = members.cloned() else { continue };
-                let asking = self.host.ask(members, question.clone());
-                thread.spawn(move || {
-                    if let Some(reply) = asking.answer() {
-                        tell(reply);
-                    }
-                })
-            };
+            let Some(members) = members.cloned() else { continue };
+            let asking = self.host.ask(members, question.clone());
+            let begun = thread.spawn(move || {
+                if let Some(reply) = asking.answer() {
+                    tell(reply);
+                }
+            });
             if let Err(error) = begun {
                 self.host.warn(&format!("the system has no thread to give: {error}"));
             }
+        }
+    }
+
+    /// Reads surfaces, all on one thread: nobody looks at several at once for long.
+    fn look(&mut self, models: &[usize]) {
+        let looking: Vec<_> = models.iter().filter_map(|&model| self.host.look(model)).collect();
+        let outbox = self.outbox.clone();
+        let begun = std::thread::Builder::new().name("surfaces".into()).spawn(move || {
+            for looking in looking {
+                let _ = outbox.send(Message::Surface(looking.answer()));
+            }
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
         }
     }
 

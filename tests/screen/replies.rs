@@ -6,11 +6,16 @@ use std::sync::Arc;
 
 use eigenselect::{
     dataset::Role,
+    mesh::Mesh,
     metrics::{Distance, Features, Sample},
     query::{Answer, Finding, Question, Reply},
     spectrum::Normalisation,
     study::{Method, why},
-    workbench::{Action, State, update},
+    workbench::{
+        Action, State,
+        shape::{Picture, Solid},
+        update,
+    },
 };
 
 /// The members' features, and the place of each row's model.
@@ -70,6 +75,26 @@ fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc
     (found, places)
 }
 
+/// A ring of 40 × 20 corners, thicker on one side.
+fn ring() -> Arc<Mesh> {
+    let (around, across) = (40_u32, 20_u32);
+    let turn = |step: u32, of: u32| f64::from(step) * std::f64::consts::TAU / f64::from(of);
+    let point = |i: u32, j: u32| {
+        let (u, v) = (turn(i, around), turn(j, across));
+        let thick = 0.3 + 0.1 * u.cos();
+        let out = 1.0 + thick * v.cos();
+        [out * u.cos(), thick * v.sin(), out * u.sin()]
+    };
+    let vertices = (0..around).flat_map(|i| (0..across).map(move |j| point(i, j))).collect();
+    let at = |i: u32, j: u32| i % around * across + j % across;
+    let cut = |i: u32, j: u32| {
+        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        [[a, b, c], [a, c, d]]
+    };
+    let triangles = (0..around).flat_map(|i| (0..across).flat_map(move |j| cut(i, j))).collect();
+    Arc::new(Mesh::new(vertices, triangles))
+}
+
 /// Lets the state have what it asks for. Answers without a member stay away, as the engine's do.
 pub fn served(mut state: State) -> State {
     // Whatever happens makes the state say what it wants to know.
@@ -82,6 +107,18 @@ pub fn served(mut state: State) -> State {
             let (finding, places) = find(&answer, &question);
             let reply = Reply { question, settings: answer.settings.clone(), places, finding };
             update(&mut state, Action::Reply(Arc::new(reply)));
+        }
+        let ring = ring();
+        while let Some(&model) = state.looked_for.first() {
+            let (question, places) = (Question::Shape(model), Arc::default());
+            let finding = Ok(Finding::Shape(Arc::clone(&ring)));
+            let reply = Reply { question, settings: answer.settings.clone(), places, finding };
+            update(&mut state, Action::Reply(Arc::new(reply)));
+        }
+        for scene in state.scenes.clone() {
+            let picture =
+                Picture::paint(&Solid::new(&scene.mesh), scene.camera, scene.pixels(), scene.style.aspect(), None);
+            update(&mut state, Action::Picture(scene, Arc::new(picture)));
         }
     }
     state

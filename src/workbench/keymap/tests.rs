@@ -23,7 +23,7 @@ fn moods() -> Vec<State> {
 #[test]
 fn no_key_means_two_things_in_one_place() {
     // A view with a cursor of its own moves it with the arrows and opens what is under it.
-    let cursor = [Key::Up, Key::Down, Key::Left, Key::Right, Key::Enter];
+    let cursor = [Key::Up, Key::Down, Key::Left, Key::Right, Key::Enter, Key::PageUp, Key::PageDown, Key::Home];
     for state in moods() {
         let contexts = contexts(&state);
         let mut seen = HashSet::new();
@@ -98,6 +98,12 @@ fn every_action_of_a_key_is_bound() {
         Action::Open,
         Action::Back,
         Action::Step(1),
+        Action::Orbit(1, 0),
+        Action::Approach(1),
+        Action::FirstLook,
+        Action::ToggleStyle,
+        Action::ShowShape,
+        Action::ToggleAlone,
         Action::Erase,
         Action::EraseAll,
         Action::Left,
@@ -143,7 +149,7 @@ fn q_closes_the_help_before_it_quits() {
     let mut state = state(View::Tables);
     update(&mut state, Action::Help);
     assert_eq!(action(&state, Key::Char('q')), Some(Action::Close));
-    assert_eq!(action(&state, Key::Char('z')), None);
+    assert_eq!(action(&state, Key::Char('Z')), None);
     update(&mut state, Action::Close);
     assert_eq!(action(&state, Key::Char('q')), Some(Action::Quit));
 }
@@ -154,7 +160,7 @@ fn hints_come_from_the_table() {
         hints(state).into_iter().map(|(keys, word)| format!("{keys} {word}")).collect::<Vec<_>>().join(" · ")
     };
     let overview = line(&state(View::Overview));
-    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–8 view · ? help · q quit");
-    assert_eq!(line(&moods()[8]), "↑↓ scroll · Esc close");
-    assert_eq!(line(&moods()[9]), "Enter take it · Esc leave it");
+    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–9 view · ? help · q quit");
+    assert_eq!(line(&moods()[9]), "↑↓ scroll · Esc close");
+    assert_eq!(line(&moods()[10]), "Enter take it · Esc leave it");
 }

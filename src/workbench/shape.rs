@@ -1,0 +1,174 @@
+//! Looking at a shape: from a surface and a camera to a picture of shades, painted away from the screen's thread.
+//!
+//! ```text
+//! Mesh ─► Solid (centred, with normals) ─► Picture (a shade and a value for each pixel) ─► cells, in the screen
+//! ```
+
+pub use self::{camera::Camera, painter::Painter, picture::Picture, solid::Solid};
+
+use std::sync::Arc;
+
+use crate::mesh::Mesh;
+
+mod camera;
+mod painter;
+mod picture;
+mod solid;
+
+/// From so many rows on the screen has tabs, rules and two lines of footer.
+pub const TALL: u16 = 14;
+/// Columns and rows of a small picture.
+pub const THUMB: (u16, u16) = (22, 11);
+/// From this size on there are small pictures.
+const ROOM: (u16, u16) = (120, 38);
+
+/// Columns and rows that the picture of a shape has on a screen of this size: all but header, tabs, rule, title and
+/// footer.
+#[must_use]
+pub const fn cells((columns, rows): (u16, u16)) -> (u16, u16) {
+    (columns, rows.saturating_sub(if rows >= TALL { 6 } else { 3 }))
+}
+
+/// How many small pictures stand side by side on a screen of this size.
+#[must_use]
+pub const fn thumbs((columns, rows): (u16, u16)) -> usize {
+    let beside = columns.saturating_sub(36);
+    if columns < ROOM.0 || rows < ROOM.1 { 0 } else { (beside / (THUMB.0 + 2)) as usize }
+}
+
+/// The newest pictures.
+#[derive(Debug, Clone, Default)]
+pub struct Pictures {
+    whole: Option<(Scene, Arc<Picture>)>,
+    small: Vec<(Scene, Arc<Picture>)>,
+}
+
+/// Small pictures that are kept.
+const KEPT: usize = 32;
+
+impl Pictures {
+    /// Takes in a picture; the one before of the same kind goes.
+    pub fn take(&mut self, scene: Scene, picture: Arc<Picture>) {
+        if scene.cells == THUMB {
+            self.small.retain(|(kept, _)| kept.model != scene.model);
+            if self.small.len() == KEPT {
+                self.small.remove(0);
+            }
+            self.small.push((scene, picture));
+        } else {
+            self.whole = Some((scene, picture));
+        }
+    }
+
+    /// The picture of a model that fills the view, perhaps from another side.
+    #[must_use]
+    pub fn whole(&self, model: usize) -> Option<(&Scene, &Picture)> {
+        self.whole.as_ref().filter(|(scene, _)| scene.model == model).map(|(scene, picture)| (scene, &**picture))
+    }
+
+    /// The small picture of a model.
+    #[must_use]
+    pub fn small(&self, model: usize) -> Option<(&Scene, &Picture)> {
+        self.small.iter().find(|(scene, _)| scene.model == model).map(|(scene, picture)| (scene, &**picture))
+    }
+
+    /// True when this scene is painted already.
+    #[must_use]
+    pub fn has(&self, scene: &Scene) -> bool {
+        self.whole.iter().chain(&self.small).any(|(kept, _)| kept == scene)
+    }
+
+    /// Forgets everything: the models have other places now.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// How a picture becomes characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Style {
+    /// Braille dots, 2 × 4 to a cell.
+    #[default]
+    Dots,
+    /// Half blocks, 1 × 2 to a cell.
+    Blocks,
+    /// A character as dark as its cell.
+    Plain,
+}
+
+impl Style {
+    /// Pixels of a cell, across and down.
+    #[must_use]
+    pub const fn pixels(self) -> (u16, u16) {
+        match self {
+            Self::Dots => (2, 4),
+            Self::Blocks => (1, 2),
+            Self::Plain => (1, 1),
+        }
+    }
+
+    /// How much higher than wide a pixel is, on the common cell that is twice as high as wide.
+    #[must_use]
+    pub const fn aspect(self) -> f32 {
+        match self {
+            Self::Dots | Self::Blocks => 1.0,
+            Self::Plain => 2.0,
+        }
+    }
+
+    /// The other style of a screen with more than ASCII.
+    #[must_use]
+    pub const fn turned(self) -> Self {
+        match self {
+            Self::Dots => Self::Blocks,
+            Self::Blocks => Self::Dots,
+            Self::Plain => Self::Plain,
+        }
+    }
+}
+
+/// A function on the vertices of a surface, and which one it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Function {
+    /// The index of its eigenvalue, from 1.
+    pub index: usize,
+    /// A value for each vertex.
+    pub values: Arc<Vec<f64>>,
+}
+
+/// What is to be painted.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The model, a place in the answer's list.
+    pub model: usize,
+    /// Its surface.
+    pub mesh: Arc<Mesh>,
+    /// What colours it.
+    pub function: Option<Function>,
+    /// Where it is seen from.
+    pub camera: Camera,
+    /// Columns and rows of the screen that it may take.
+    pub cells: (u16, u16),
+    /// How it becomes characters.
+    pub style: Style,
+}
+
+impl PartialEq for Scene {
+    /// Surfaces and functions are compared by identity: they are large, and never change.
+    fn eq(&self, other: &Self) -> bool {
+        let function = |scene: &Self| scene.function.as_ref().map(|f| (f.index, Arc::as_ptr(&f.values)));
+        self.model == other.model
+            && Arc::ptr_eq(&self.mesh, &other.mesh)
+            && function(self) == function(other)
+            && (self.camera, self.cells, self.style) == (other.camera, other.cells, other.style)
+    }
+}
+
+impl Scene {
+    /// Pixels across and down.
+    #[must_use]
+    pub const fn pixels(&self) -> (usize, usize) {
+        let (across, down) = self.style.pixels();
+        (self.cells.0 as usize * across as usize, self.cells.1 as usize * down as usize)
+    }
+}
