@@ -36,6 +36,8 @@ pub(super) fn solve(
         let pencil = Pencil::new(matrix.as_ref().unwrap_or(&laplacian.matrix))
             .ok_or_else(|| SpectrumError::Refused("not enough memory to order the vertices".to_owned()))?;
         poll.charge(Cost::Ordering);
+        poll.meter.timings.entries += pencil.symbolic.values();
+        poll.meter.timings.multiplications += pencil.symbolic.multiplications();
         state.parts.push(Part::new(number, pencil, laplacian.unit(), known));
     }
     let mut tools = Tools::default();

@@ -73,6 +73,10 @@ pub struct Timings {
     pub solves: usize,
     /// Lanczos processes.
     pub processes: usize,
+    /// Numbers in one factor; the sum over the pieces of a mesh.
+    pub entries: usize,
+    /// Multiplications of one numeric factorisation, likewise.
+    pub multiplications: usize,
 }
 
 impl PartialEq for Timings {
@@ -101,6 +105,8 @@ impl Timings {
         self.factorisations += other.factorisations;
         self.solves += other.solves;
         self.processes += other.processes;
+        self.entries += other.entries;
+        self.multiplications += other.multiplications;
     }
 }
 

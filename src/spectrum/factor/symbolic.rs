@@ -63,8 +63,17 @@ impl Symbolic {
     }
 
     /// Numbers in the factor.
-    pub(super) fn values(&self) -> usize {
+    pub(in crate::spectrum) fn values(&self) -> usize {
         self.value_start.last().copied().unwrap_or(0)
+    }
+
+    /// Multiplications of a numeric factorisation: (r² + 3r)/2 for a column with r entries below its pivot.
+    pub(in crate::spectrum) fn multiplications(&self) -> usize {
+        let below = |at| {
+            let (_, width, rows) = self.node(at);
+            (0..width).map(move |column| rows.len() + column)
+        };
+        (0..self.len()).flat_map(below).map(|below| (below * below + 3 * below) / 2).sum()
     }
 
     fn finish(matrix: &Symmetric, begin: Vec<u32>, row_start: Vec<usize>, rows: Vec<u32>, parent: &[u32]) -> Self {
