@@ -1,44 +1,48 @@
 //! Mesh → stiffness matrix L and mass matrix B.
 //!
-//! [`assemble()`] takes any triangle list: closed or with a boundary (natural, so Neumann, conditions), of one piece or
-//! many, manifold or not, consistently oriented or not. Every triangle adds the positive semi-definite matrix of its
-//! own metric, so L is positive semi-definite whatever the connectivity, and its kernel has one dimension per
-//! connected component. What cannot be taken as it is (a repeated face, a face without area) is mended locally, and
-//! [`Laplacian::notes`] says so.
-
-use serde::{Deserialize, Serialize};
+//! [`assemble()`] takes any triangle list: closed or with a boundary, of one piece or many, manifold or not,
+//! consistently oriented or not, and points without faces as well. Every triangle adds the positive semi-definite
+//! matrix of its own metric, so L is positive semi-definite whatever the connectivity, and its kernel has one dimension
+//! per connected component that no Dirichlet condition holds. What cannot be taken as it is (a repeated face, a face
+//! without area) is mended locally, and [`Laplacian::notes`] says so.
+//!
+//! ```text
+//! mesh ─► surface ─┬─ as given ───────────────► elements ─► joins ─► matrix ─► restrict ─► Laplacian
+//!                  └─ cover ─► flips (glued) ─────┘            (sums)           (Dirichlet)
+//! points ─► cloud ─────┘
+//! ```
+//!
+//! What is summed over is chosen by [`Triangulation`]:
+//!
+//! | | triangles | for |
+//! |---|---|---|
+//! | `given` | those of the mesh | good meshes |
+//! | `delaunay` | those of the intrinsic Delaunay triangulation of the same surface (Bobenko and Springborn 2007): edges between two faces are flipped, all others stay | bad triangles |
+//! | `tufted` | those of the intrinsic Delaunay triangulation of the tufted cover (Sharp and Crane 2020), halved | non-manifold meshes, polygon soups |
+//! | `auto` | as given; local triangulations and `tufted` for points; vertices joined and `tufted` for soups | the default |
+//!
+//! Why `auto` keeps to the given triangles wherever there are some that hang together: the element matrices of
+//! a non-manifold or inconsistently oriented mesh are those of its faces, which need neither neighbours nor
+//! orientation, so there is nothing to repair; and spectra of a data set stay comparable with those of other programs.
 
 pub(crate) use self::matrix::MassMatrix;
 pub use self::{
-    assemble::{Extent, LaplacianError, assemble},
+    assemble::{LaplacianError, assemble},
+    choice::{Boundary, Choice, Mass, Operator, Triangulation},
     matrix::Symmetric,
+    surface::Extent,
 };
 
 mod assemble;
+mod choice;
+mod cloud;
+mod cover;
 mod element;
+mod glued;
+mod joins;
 mod matrix;
-
-/// Which eigenproblem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Operator {
-    /// Linear finite elements, `L f = λ B f`. Unit of λ: 1/length².
-    #[default]
-    Fem,
-    /// Cotangent weights without a mass matrix, `L f = λ f`. λ has no unit.
-    Cot,
-}
-
-/// The mass matrix B of [`Operator::Fem`]; without effect on [`Operator::Cot`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Mass {
-    /// That of linear elements: `B_ii = Σ area/6`, `B_ij = Σ area/12` over the triangles at the edge.
-    #[default]
-    Consistent,
-    /// Diagonal: a third of the area of the triangles around a vertex.
-    Lumped,
-}
+mod restrict;
+mod surface;
 
 /// The pair (L, B) of a mesh, with what the eigensolver needs to know of it.
 ///
@@ -48,12 +52,16 @@ pub enum Mass {
 pub struct Laplacian {
     /// L and B on one pattern.
     pub matrix: Symmetric,
-    /// Which vertex of the mesh each row belongs to, ascending; vertices without a triangle have no row.
+    /// Which vertex of the mesh each row belongs to, ascending; vertices without a triangle have no row, nor have those
+    /// that a Dirichlet condition holds.
     pub vertices: Vec<u32>,
     /// For each row its connected component, numbered from 0 by their first rows.
     pub component: Vec<u32>,
-    /// How many connected components there are: the dimension of L's kernel.
+    /// How many connected components there are. Those that no Dirichlet condition holds have the constants in L's
+    /// kernel.
     pub components: usize,
+    /// 1ᵀB1 of the whole surface, boundary included, in the scaled unit.
+    pub(crate) total: f64,
     /// The coordinates were divided by two to this power.
     pub exponent: i32,
     /// What was done to the mesh, one line each.
@@ -61,11 +69,11 @@ pub struct Laplacian {
 }
 
 impl Laplacian {
-    /// 1ᵀB1 in the mesh's own unit: its area for finite elements, the number of rows for [`Operator::Cot`].
+    /// 1ᵀB1 of the whole surface in the mesh's own unit: its area for finite elements, the number of its vertices for
+    /// [`Operator::Cot`]. Vertices that a Dirichlet condition holds count as well.
     #[must_use]
     pub fn measure(&self) -> f64 {
-        let sum = self.matrix.total_mass();
-        if self.matrix.unit_mass() { sum } else { sum * 4_f64.powi(self.exponent) }
+        if self.matrix.unit_mass() { self.total } else { self.total * 4_f64.powi(self.exponent) }
     }
 
     /// What an eigenvalue of the scaled pair is multiplied with to be one of the mesh: 1 for [`Operator::Cot`].

@@ -18,8 +18,9 @@ pub use self::{
     timings::{Cost, Timings},
     vectors::Eigenvector,
 };
+pub use crate::laplacian::Choice;
 use crate::{
-    laplacian::{Laplacian, LaplacianError, Mass, Operator, assemble},
+    laplacian::{Laplacian, LaplacianError, assemble},
     mesh::Mesh,
     watch::Watch,
 };
@@ -50,26 +51,6 @@ mod vectors;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
 pub const KERNEL: u32 = 2;
-
-/// Which eigenproblem.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
-pub struct Choice {
-    /// The operator.
-    pub operator: Operator,
-    /// Its mass matrix; always [`Mass::Consistent`] for [`Operator::Cot`], which has none.
-    pub mass: Mass,
-}
-
-impl Choice {
-    /// The choice of an operator and a mass matrix; equal for choices that are the same eigenproblem.
-    #[must_use]
-    pub const fn new(operator: Operator, mass: Mass) -> Self {
-        match operator {
-            Operator::Fem => Self { operator, mass },
-            Operator::Cot => Self { operator, mass: Mass::Consistent },
-        }
-    }
-}
 
 /// Why there is no spectrum.
 #[derive(Debug, Error)]
@@ -107,9 +88,10 @@ pub struct Spectrum {
     pub bands: Vec<Band>,
     /// How many pieces the bands are of.
     pub parts: u32,
-    /// How many eigenvalues there can be: the number of vertices in use.
+    /// How many eigenvalues there can be: the number of vertices in use that no Dirichlet condition holds.
     pub order: usize,
-    /// 1ᵀB1: the area for finite elements, `order` for the cotangent operator.
+    /// 1ᵀB1 of the whole surface: the area for finite elements, the number of vertices in use for the cotangent
+    /// operator.
     pub measure: f64,
     /// How many eigenvalues are zero: the number of connected components that no boundary condition holds.
     pub zeros: usize,
@@ -202,7 +184,7 @@ pub fn solve(
     watch: &dyn Watch,
 ) -> Result<Spectrum, SpectrumError> {
     let mut meter = Meter::start();
-    let laplacian = assemble(mesh, choice.operator, choice.mass)?;
+    let laplacian = assemble(mesh, choice)?;
     meter.charge(Cost::Assembly);
     let mut spectrum = solve_laplacian(&laplacian, count, known, watch)?;
     spectrum.timings.add(&meter.timings);
@@ -237,7 +219,7 @@ pub fn eigenvectors(
     wanted: &[usize],
     watch: &dyn Watch,
 ) -> Result<Vec<Eigenvector>, SpectrumError> {
-    let laplacian = assemble(mesh, choice.operator, choice.mass)?;
+    let laplacian = assemble(mesh, choice)?;
     let mut vectors = eigenvectors_laplacian(&laplacian, spectrum, wanted, watch)?;
     for vector in &mut vectors {
         let mut values = vec![0.0; mesh.vertices().len()];

@@ -30,7 +30,7 @@ fn a_wrong_command_line_exits_with_2_and_says_what_is_wrong() {
         (&["report", "data", "--format", "xml"], "text, md, csv, json"),
         (
             &["report", "data", "--set", "kmx=3"],
-            "operator, mass, kmax, normalisation, distance, k, T, cost, sel, class",
+            "operator, mass, boundary, triangulation, kmax, normalisation, distance, k, T, cost, sel, class",
         ),
         (&["data", "--set", "T"], "NAME=VALUE"),
         (&["data", "--set", "T=0"], "T takes a number from 1"),
@@ -269,7 +269,7 @@ fn spectra_are_written_in_every_format() {
 fn spectra_of_some_meshes_survive_the_failure_of_others() {
     let room = Room::new();
     fs::write(room.path("ball.off"), ball(8, 12, 1.0)).unwrap();
-    fs::write(room.path("flat.off"), "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
+    fs::write(room.path("flat.off"), "OFF\n2 0 0\n0 0 0\n1 0 0\n").unwrap();
     let outcome = tui(
         &room,
         &["spectrum", "flat.off", "ball.off", "notes.txt", "--count", "500", "--no-cache", "--format", "json"],

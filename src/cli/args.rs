@@ -5,7 +5,7 @@ use std::{path::PathBuf, time::Duration};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::{
-    laplacian::{Mass, Operator},
+    laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     mesh::synth::class_names,
     query::{Parameter, Settings},
     report,
@@ -22,7 +22,7 @@ Examples:
   tui cache stats                            what is kept between sessions
 
 DIR holds a folder of meshes for each class (DIR/<class>/<model>.obj), or train/ and query/
-with such folders, or Princeton .cla files. Meshes are OBJ, OFF, PLY or STL. To open a folder
+with such folders, or Princeton .cla files. Meshes are OBJ, OFF, PLY or STL (points: XYZ too). To open a folder
 that is named like a command, write ./report.
 
 Exit codes: 0 done, 1 failed, 2 wrong command line, 130 interrupted by Ctrl-C (what is finished
@@ -114,7 +114,7 @@ pub(super) struct ReportArguments {
 #[derive(Debug, Args)]
 #[command(after_help = SPECTRUM_NOTES)]
 pub(super) struct SpectrumArguments {
-    /// Mesh files: OBJ, OFF, PLY or STL
+    /// Mesh files: OBJ, OFF, PLY or STL; points without faces also as XYZ
     #[arg(value_name = "MESH", required = true)]
     pub(super) meshes: Vec<PathBuf>,
     /// How many eigenvalues, the zeros included
@@ -126,6 +126,12 @@ pub(super) struct SpectrumArguments {
     /// The mass matrix B of fem
     #[arg(long, value_enum, default_value = "consistent")]
     pub(super) mass: MassName,
+    /// What holds on the boundary, the edges of one face: no slope, or zero
+    #[arg(long, value_enum, default_value = "neumann")]
+    pub(super) boundary: BoundaryName,
+    /// The triangles that are summed over
+    #[arg(long, value_enum, default_value = "auto")]
+    pub(super) triangulation: TriangulationName,
     /// How to write them [default: by the ending of --out, else text]
     #[arg(long, value_enum)]
     pub(super) format: Option<SpectrumFormat>,
@@ -272,6 +278,8 @@ impl From<OperatorName> for Operator {
 pub(super) enum MassName {
     Consistent,
     Lumped,
+    /// their mean
+    Blended,
 }
 
 impl From<MassName> for Mass {
@@ -279,7 +287,57 @@ impl From<MassName> for Mass {
         match name {
             MassName::Consistent => Self::Consistent,
             MassName::Lumped => Self::Lumped,
+            MassName::Blended => Self::Blended,
         }
+    }
+}
+
+/// `--boundary`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum BoundaryName {
+    Neumann,
+    Dirichlet,
+}
+
+impl From<BoundaryName> for Boundary {
+    fn from(name: BoundaryName) -> Self {
+        match name {
+            BoundaryName::Neumann => Self::Neumann,
+            BoundaryName::Dirichlet => Self::Dirichlet,
+        }
+    }
+}
+
+/// `--triangulation`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum TriangulationName {
+    /// the given ones; for points and soups, which have none that hang together, others
+    Auto,
+    /// the faces of the mesh
+    Given,
+    /// the intrinsic Delaunay triangulation of the surface: for bad triangles
+    Delaunay,
+    /// the same of its tufted cover: for non-manifold meshes and soups
+    Tufted,
+}
+
+impl From<TriangulationName> for Triangulation {
+    fn from(name: TriangulationName) -> Self {
+        match name {
+            TriangulationName::Auto => Self::Auto,
+            TriangulationName::Given => Self::Given,
+            TriangulationName::Delaunay => Self::Delaunay,
+            TriangulationName::Tufted => Self::Tufted,
+        }
+    }
+}
+
+impl SpectrumArguments {
+    /// The eigenproblem.
+    pub(super) fn choice(&self) -> Choice {
+        Choice::new(self.operator.into(), self.mass.into())
+            .with_boundary(self.boundary.into())
+            .with_triangulation(self.triangulation.into())
     }
 }
 
@@ -389,7 +447,7 @@ mod tests {
         assert_eq!(setting("T=50"), Ok(Setting { parameter: Parameter::Rounds, value: "50".to_owned() }));
         assert_eq!(setting("class=ant").map(|setting| setting.value), Ok("ant".to_owned()));
         assert!(setting("T=none").unwrap_err().contains("T takes a number"));
-        assert!(setting("kmx=3").unwrap_err().contains("operator, mass, kmax"));
+        assert!(setting("kmx=3").unwrap_err().contains("operator, mass, boundary"));
         assert!(setting("kmax").unwrap_err().contains("NAME=VALUE"));
     }
 

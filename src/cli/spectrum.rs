@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     let store =
         (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], arguments.cache.as_deref())));
     let singles = Singles::new(store.clone());
-    let choice = Choice::new(arguments.operator.into(), arguments.mass.into());
+    let choice = arguments.choice();
     let solved = solve(&singles, arguments, choice, interrupt)?;
 
     let mut spectra = Spectra::new();

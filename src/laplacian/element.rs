@@ -43,12 +43,18 @@ fn mollified(lengths: [f64; 3], floor: f64) -> Element {
     let short =
         (0..3).map(|at| lengths[at] - lengths[(at + 1) % 3] - lengths[(at + 2) % 3]).fold(f64::NEG_INFINITY, f64::max);
     let opened = lengths.map(|length| length + (short + room).max(0.0));
-    let area = heron(opened);
+    Element { mollified: true, ..of_lengths(opened) }
+}
+
+/// The metric of the triangle with these edge lengths, each opposite of its corner. Where they make no triangle, its
+/// area is zero and its cotangents are not finite.
+pub(super) fn of_lengths(lengths: [f64; 3]) -> Element {
+    let area = heron(lengths);
     let cotangents = [0, 1, 2].map(|at: usize| {
-        let [a, b, c] = [opened[at], opened[(at + 1) % 3], opened[(at + 2) % 3]];
+        let [a, b, c] = [lengths[at], lengths[(at + 1) % 3], lengths[(at + 2) % 3]];
         (b * b + c * c - a * a) / (4.0 * area)
     });
-    Element { area, cotangents, mollified: true }
+    Element { area, cotangents, mollified: false }
 }
 
 /// Area from the edge lengths, in Kahan's stable order of operations.

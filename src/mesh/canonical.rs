@@ -8,9 +8,10 @@ const CONTEXT: &str = "eigenselect 2026 canonical triangle mesh v1";
 impl Mesh {
     /// The same surface, independent of the order in which its file listed it.
     ///
-    /// Vertices that no triangle names are left out (as are triangles that name a missing vertex, which no reader
-    /// lets through); −0 becomes 0; vertices ascend by (x, y, z), vertices at one position keep their order;
-    /// each triangle begins at its smallest index and keeps its orientation; triangles ascend.
+    /// Vertices that no triangle names are left out, unless there are no triangles at all; so are triangles that name
+    /// a missing vertex, which no reader lets through. −0 becomes 0; vertices ascend by (x, y, z), vertices at one
+    /// position keep their order; each triangle begins at its smallest index and keeps its orientation; triangles
+    /// ascend.
     ///
     /// Everything downstream computes on this form, so that meshes of equal [`Mesh::hash`] give the same bits.
     /// Meshes with several vertices at one position may differ in their hash for another order of these vertices:
@@ -24,7 +25,8 @@ impl Mesh {
             .copied()
             .filter(|triangle| triangle.iter().all(|&vertex| (vertex as usize) < count))
             .collect();
-        let mut used = vec![false; count];
+        // Without triangles every vertex is a point of a cloud.
+        let mut used = vec![self.triangles.is_empty(); count];
         for vertex in named.iter().flatten() {
             used[*vertex as usize] = true;
         }
@@ -102,6 +104,8 @@ mod tests {
             vec![[1.0, 0.0, 0.0], [9.0, 9.0, 9.0], [-0.0, 0.0, 0.0], [0.0, 1.0, -0.0]],
             vec![[3, 0, 2], [2, 3, 0], [7, 0, 2], [2, 0, 0]],
         );
+        let cloud = Mesh::new(mesh.vertices.clone(), Vec::new()).canonical();
+        assert_eq!(cloud.vertices(), [[0.0; 3], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [9.0, 9.0, 9.0]]);
         let canonical = mesh.canonical();
         assert_eq!(canonical.vertices(), [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
         assert!(canonical.vertices().iter().flatten().all(|coordinate| coordinate.is_sign_positive()));

@@ -6,6 +6,9 @@
 //! | OFF | `[ST][C][N][4][n]OFF`, text and `BINARY`, with the header's parts missing as they are in the wild | own |
 //! | PLY | ASCII, binary in both byte orders, any properties and elements, `tristrips` | own |
 //! | STL | ASCII and binary, vertices joined where they are exactly equal | own |
+//! | XYZ | points, one a line, without faces | own |
+//!
+//! A file of any format may have vertices without faces: it is then a point cloud, a mesh without triangles.
 //!
 //! PLY and STL have readers of our own because the usual crates fail on what the wild holds. `ply-rs-bw` 4.0.1
 //! fills memory for an element without properties (its announced count times some 70 bytes, from a file of 90 bytes)
@@ -26,6 +29,7 @@ mod off;
 mod ply;
 mod stl;
 mod text;
+mod xyz;
 
 /// A mesh file's format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -38,11 +42,13 @@ pub enum Format {
     Ply,
     /// Stereolithography.
     Stl,
+    /// Points, one a line.
+    Xyz,
 }
 
 impl Format {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Obj, Self::Off, Self::Ply, Self::Stl];
+    pub const ALL: [Self; 5] = [Self::Obj, Self::Off, Self::Ply, Self::Stl, Self::Xyz];
 
     /// The file name's ending, without a dot, in small letters.
     #[must_use]
@@ -52,6 +58,7 @@ impl Format {
             Self::Off => "off",
             Self::Ply => "ply",
             Self::Stl => "stl",
+            Self::Xyz => "xyz",
         }
     }
 
@@ -70,6 +77,7 @@ impl fmt::Display for Format {
             Self::Off => "OFF",
             Self::Ply => "PLY",
             Self::Stl => "STL",
+            Self::Xyz => "XYZ",
         })
     }
 }
@@ -184,6 +192,7 @@ pub fn read(bytes: &[u8], format: Format) -> Result<Mesh, ReadError> {
         Format::Off => off::read(bytes),
         Format::Ply => ply::read(bytes),
         Format::Stl => stl::read(bytes),
+        Format::Xyz => xyz::read(bytes),
     }
 }
 

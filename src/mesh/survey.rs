@@ -42,7 +42,7 @@ impl Survey {
         if self.vertices == 0 {
             return Some("there are no vertices".to_owned());
         }
-        if self.triangles == 0 {
+        if self.triangles == 0 && self.vertices < 3 {
             return Some(format!("there are no faces, only {} vertices", self.vertices));
         }
         fatal(DefectKind::NotFinite).or_else(|| fatal(DefectKind::MissingVertex)).or_else(|| {
@@ -50,7 +50,8 @@ impl Survey {
                 return Some("the coordinates are too large for an area to be computed".to_owned());
             }
             let flat = self.count(DefectKind::ZeroArea) + self.count(DefectKind::RepeatedVertex);
-            (self.area == 0.0 || flat >= self.triangles).then(|| "no face has an area".to_owned())
+            (self.triangles > 0 && (self.area == 0.0 || flat >= self.triangles))
+                .then(|| "no face has an area".to_owned())
         })
     }
 
@@ -74,6 +75,10 @@ impl Survey {
 pub fn survey(mesh: &Mesh) -> Survey {
     let mut defects = Vec::new();
     let sound = shape::look(mesh, &mut defects);
+    if mesh.triangles().is_empty() && !mesh.vertices().is_empty() {
+        defects.retain(|defect: &Defect| defect.kind != DefectKind::UnusedVertex);
+        defects.push(Defect::of_all(DefectKind::NoFaces, mesh.vertices().len()));
+    }
     let topology = topology::look(mesh.vertices().len(), &sound, &mut defects);
     defects.sort_by_key(|defect: &Defect| defect.kind);
     Survey {

@@ -19,7 +19,6 @@ use super::{
 };
 use crate::{
     dataset::Role,
-    laplacian::{Mass, Operator},
     mesh::Format,
     metrics::{Distance, Features},
     selection::{self, Climb, Cost, SelCount, Strong},
@@ -109,9 +108,7 @@ pub(crate) struct ModelFile {
 #[derive(Debug)]
 pub(crate) struct Knobs {
     #[returns(copy)]
-    pub(crate) operator: Operator,
-    #[returns(copy)]
-    pub(crate) mass: Mass,
+    pub(crate) choice: Choice,
     #[returns(copy)]
     pub(crate) kmax: usize,
     #[returns(copy)]

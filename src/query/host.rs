@@ -21,7 +21,6 @@ use super::{
 use crate::{
     dataset::DataSet,
     mesh::Format,
-    spectrum::Choice,
     store::Store,
     study::{Boosted, Climbed, FirstK, Mark, Table},
 };
@@ -122,8 +121,7 @@ impl Host {
         let classes = Arc::new(data.classes.clone());
         Knobs::new(
             &database,
-            settings.operator,
-            settings.mass,
+            settings.choice(),
             settings.kmax,
             settings.normalisation,
             settings.distance,
@@ -194,11 +192,8 @@ impl Host {
         self.database.write(|db| {
             let knobs = Knobs::get(db);
             // Setters do not compare, and an input that is set to its own value still runs all that reads it.
-            if old.operator != new.operator {
-                knobs.set_operator(db).to(new.operator);
-            }
-            if old.mass != new.mass {
-                knobs.set_mass(db).to(new.mass);
+            if old.choice() != new.choice() {
+                knobs.set_choice(db).to(new.choice());
             }
             if old.kmax != new.kmax {
                 knobs.set_kmax(db).to(new.kmax);
@@ -219,14 +214,14 @@ impl Host {
                 knobs.set_sel(db).to(new.sel);
             }
         });
-        let choice = choice(&self.settings);
-        if choice != self::choice(&old) {
+        let choice = self.settings.choice();
+        if choice != old.choice() {
             for row in &mut self.rows {
                 row.found = None;
                 row.working = None;
             }
         }
-        if choice != self::choice(&old) || self.settings.kmax != old.kmax {
+        if choice != old.choice() || self.settings.kmax != old.kmax {
             self.want();
         }
         self.shown.outdate();
@@ -301,7 +296,7 @@ impl Host {
 
     /// Tells the pool what is wanted now.
     fn want(&mut self) {
-        let (choice, count) = (choice(&self.settings), self.settings.kmax);
+        let (choice, count) = (self.settings.choice(), self.settings.kmax);
         let mut within = HashMap::<u32, usize>::new();
         let mut jobs = Vec::with_capacity(self.rows.len());
         for (slot, (row, model)) in self.rows.iter_mut().zip(&self.data.models).enumerate() {
@@ -382,10 +377,6 @@ impl Host {
     pub(crate) fn save(&self) {
         self.library.save_contents();
     }
-}
-
-fn choice(settings: &Settings) -> Choice {
-    Choice::new(settings.operator, settings.mass)
 }
 
 impl<T> Part<T> {

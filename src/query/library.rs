@@ -65,7 +65,7 @@ pub(crate) enum Missing {
 }
 
 /// Increase when readers or checks would say something else of the same bytes.
-const READER: u64 = 1;
+const READER: u64 = 2;
 
 #[derive(Debug, Default)]
 struct Memory {
@@ -167,7 +167,7 @@ impl Library {
             return known.clone().map_err(|reason| Unread { reason, decided: true });
         }
         let start = Instant::now();
-        let key = Key::new("facts").number(READER).field(&file.content.0).number(file.format as u64);
+        let key = Key::new("facts").number(READER).field(&file.content.0).field(file.format.ending().as_bytes());
         let (facts, source) = if let Some(facts) = self.0.store.get::<Facts>(&key) {
             (Ok(Arc::new(facts)), Source::Disk)
         } else {
@@ -239,11 +239,8 @@ impl Library {
         let start = Instant::now();
         let (geometry, choice) = name;
         let key_of = |kind| {
-            Key::new(kind)
-                .number(u64::from(spectrum::KERNEL))
-                .field(&geometry.0)
-                .number(choice.operator as u64)
-                .number(choice.mass as u64)
+            let key = Key::new(kind).number(u64::from(spectrum::KERNEL)).field(&geometry.0);
+            choice.numbers().into_iter().fold(key, Key::number)
         };
         let key = key_of("spectrum");
         let stored = self.0.store.get::<Spectrum>(&key);

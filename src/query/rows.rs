@@ -15,7 +15,6 @@ use super::{
 };
 use crate::{
     selection::{Cost, Strong},
-    spectrum::Choice,
     study::{self, Boosted, Climbed, FirstK, Mark, Table},
 };
 
@@ -31,8 +30,7 @@ pub(super) fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> 
 
 pub(super) fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
     let knobs = Knobs::get(db);
-    let choice = Choice::new(knobs.operator(db), knobs.mass(db));
-    SampleKey::new(db, cohort, choice, knobs.normalisation(db), width)
+    SampleKey::new(db, cohort, knobs.choice(db), knobs.normalisation(db), width)
 }
 
 /// The first-k curves up to kmax.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    laplacian::{Mass, Operator},
+    laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     metrics::Distance,
     selection::{Cost, SelCount},
     spectrum::Normalisation,
@@ -21,6 +21,10 @@ pub struct Settings {
     pub operator: Operator,
     /// Which mass matrix.
     pub mass: Mass,
+    /// What holds on the boundary.
+    pub boundary: Boundary,
+    /// Which triangles are summed over.
+    pub triangulation: Triangulation,
     /// How many eigenvalues of each model are used.
     pub kmax: usize,
     /// What is made of them.
@@ -44,6 +48,8 @@ impl Default for Settings {
         Self {
             operator: Operator::Fem,
             mass: Mass::Consistent,
+            boundary: Boundary::Neumann,
+            triangulation: Triangulation::Auto,
             kmax: 500,
             normalisation: Normalisation::Max,
             distance: Distance::L2,
@@ -63,6 +69,10 @@ pub enum Parameter {
     Operator,
     /// [`Settings::mass`].
     Mass,
+    /// [`Settings::boundary`].
+    Boundary,
+    /// [`Settings::triangulation`].
+    Triangulation,
     /// [`Settings::kmax`].
     Kmax,
     /// [`Settings::normalisation`].
@@ -83,9 +93,11 @@ pub enum Parameter {
 
 impl Parameter {
     /// All of them, in the order in which they are shown.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Operator,
         Self::Mass,
+        Self::Boundary,
+        Self::Triangulation,
         Self::Kmax,
         Self::Normalisation,
         Self::Distance,
@@ -102,6 +114,8 @@ impl Parameter {
         match self {
             Self::Operator => "operator",
             Self::Mass => "mass",
+            Self::Boundary => "boundary",
+            Self::Triangulation => "triangulation",
             Self::Kmax => "kmax",
             Self::Normalisation => "normalisation",
             Self::Distance => "distance",
@@ -118,7 +132,9 @@ impl Parameter {
     pub const fn about(self) -> &'static str {
         match self {
             Self::Operator => "eigenproblem: fem (L f = λ B f) or cot (L f = λ f)",
-            Self::Mass => "mass matrix of fem: consistent or lumped",
+            Self::Mass => "mass matrix of fem: consistent, lumped, or blended (their mean)",
+            Self::Boundary => "condition at open edges: neumann (no slope) or dirichlet (zero)",
+            Self::Triangulation => "triangles summed over: auto, given, delaunay or tufted",
             Self::Kmax => "eigenvalues of each model that are used",
             Self::Normalisation => "what is made of λ: none, area (λ·area), max (λ/λ_kmax), weyl, log",
             Self::Distance => "how features are compared: l2, l1, chi2",
@@ -135,7 +151,9 @@ impl Parameter {
     pub const fn choices(self) -> &'static [&'static str] {
         match self {
             Self::Operator => &["fem", "cot"],
-            Self::Mass => &["consistent", "lumped"],
+            Self::Mass => &["consistent", "lumped", "blended"],
+            Self::Boundary => &["neumann", "dirichlet"],
+            Self::Triangulation => &["auto", "given", "delaunay", "tufted"],
             Self::Normalisation => &["none", "area", "max", "weyl", "log"],
             Self::Distance => &["l2", "l1", "chi2"],
             Self::Cost => &["error", "adr"],
@@ -163,6 +181,12 @@ impl Parameter {
 }
 
 impl Settings {
+    /// The eigenproblem.
+    #[must_use]
+    pub const fn choice(&self) -> Choice {
+        Choice::new(self.operator, self.mass).with_boundary(self.boundary).with_triangulation(self.triangulation)
+    }
+
     /// The value of a parameter as text: what [`Settings::set`] takes. Classes count from 1.
     #[must_use]
     pub fn get(&self, parameter: Parameter) -> String {
@@ -170,6 +194,8 @@ impl Settings {
         match parameter {
             Parameter::Operator => word(self.operator as usize),
             Parameter::Mass => word(self.mass as usize),
+            Parameter::Boundary => word(self.boundary as usize),
+            Parameter::Triangulation => word(self.triangulation as usize),
             Parameter::Normalisation => word(self.normalisation as usize),
             Parameter::Distance => word(self.distance as usize),
             Parameter::Cost => word(self.cost as usize),
@@ -207,7 +233,9 @@ impl Settings {
             .ok_or_else(|| format!("{} takes {}, not {value:?}", parameter.name(), choices.join(", ")))?;
         match parameter {
             Parameter::Operator => self.operator = [Operator::Fem, Operator::Cot][index],
-            Parameter::Mass => self.mass = [Mass::Consistent, Mass::Lumped][index],
+            Parameter::Mass => self.mass = Mass::ALL[index],
+            Parameter::Boundary => self.boundary = [Boundary::Neumann, Boundary::Dirichlet][index],
+            Parameter::Triangulation => self.triangulation = Triangulation::ALL[index],
             Parameter::Normalisation => self.normalisation = Normalisation::ALL[index],
             Parameter::Distance => self.distance = Distance::ALL[index],
             Parameter::Cost => self.cost = [Cost::Error, Cost::Adr][index],

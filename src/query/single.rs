@@ -60,7 +60,8 @@ impl Singles {
     /// [`SingleError`].
     pub fn solve(&self, path: &Path, choice: Choice, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
         let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
-        let format = Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl"))?;
+        let format =
+            Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
         let Some(library) = &self.library else {
             return solve_alone(path, format, choice, count, watch);
         };

@@ -28,7 +28,7 @@ use super::{
     layout::{count, number, plain},
 };
 use crate::{
-    laplacian::{Mass, Operator},
+    laplacian::{Boundary, Mass, Operator, Triangulation},
     mesh::{GeometryHash, Survey},
     query::Source,
     spectrum::{Choice, Spectrum},
@@ -66,6 +66,10 @@ pub struct MeshSpectrum {
     pub operator: Operator,
     /// The mass matrix; none for cot.
     pub mass: Option<Mass>,
+    /// The condition on the boundary.
+    pub boundary: Boundary,
+    /// Which triangles were asked for; `notes` say what was done.
+    pub triangulation: Triangulation,
     /// Total mass 1ᵀB1: the area for FEM, the number of vertices for cot.
     pub measure: f64,
     /// How many eigenvalues the mesh has altogether.
@@ -130,6 +134,8 @@ impl MeshSpectrum {
             defects: survey.defects.iter().map(ToString::to_string).collect(),
             operator: choice.operator,
             mass: (choice.operator == Operator::Fem).then_some(choice.mass),
+            boundary: choice.boundary,
+            triangulation: choice.triangulation,
             measure: spectrum.measure,
             order: spectrum.order,
             notes: spectrum.notes.clone(),
@@ -145,13 +151,25 @@ impl MeshSpectrum {
         positive.map(|(value, error)| error / value).fold(0.0, f64::max)
     }
 
-    /// `fem, consistent mass`.
-    fn problem(&self) -> &'static str {
-        match (self.operator, self.mass) {
+    /// `fem, consistent mass`, and what else is not the default.
+    fn problem(&self) -> String {
+        let operator = match (self.operator, self.mass) {
             (Operator::Fem, Some(Mass::Lumped)) => "fem, lumped mass",
+            (Operator::Fem, Some(Mass::Blended)) => "fem, blended mass",
             (Operator::Fem, _) => "fem, consistent mass",
             (Operator::Cot, _) => "cot",
-        }
+        };
+        let boundary = match self.boundary {
+            Boundary::Neumann => "",
+            Boundary::Dirichlet => ", Dirichlet",
+        };
+        let triangulation = match self.triangulation {
+            Triangulation::Auto => "",
+            Triangulation::Given => ", given triangles",
+            Triangulation::Delaunay => ", intrinsic Delaunay",
+            Triangulation::Tufted => ", tufted cover",
+        };
+        format!("{operator}{boundary}{triangulation}")
     }
 }
 
@@ -252,14 +270,18 @@ fn text(spectrum: &MeshSpectrum, seconds: f64) -> String {
         edges => count(edges, "boundary edge", "boundary edges"),
     };
     let genus = spectrum.genus.map_or_else(String::new, |genus| format!(", genus {genus}"));
-    let _ = writeln!(
-        text,
-        "  mesh      {} vertices, {} triangles, {}, {boundary}{genus}, area {}",
-        spectrum.vertices,
-        spectrum.triangles,
-        count(spectrum.components, "component", "components"),
-        significant(spectrum.area)
-    );
+    if spectrum.triangles == 0 {
+        let _ = writeln!(text, "  points    {} without faces", spectrum.vertices);
+    } else {
+        let _ = writeln!(
+            text,
+            "  mesh      {} vertices, {} triangles, {}, {boundary}{genus}, area {}",
+            spectrum.vertices,
+            spectrum.triangles,
+            count(spectrum.components, "component", "components"),
+            significant(spectrum.area)
+        );
+    }
     let found = if spectrum.eigenvalues.len() == spectrum.order {
         format!("all {} eigenvalues", spectrum.order)
     } else {
@@ -333,6 +355,8 @@ mod tests {
             defects: vec!["1 unused vertex (vertex 7)".to_owned()],
             operator: Operator::Fem,
             mass: Some(Mass::Consistent),
+            boundary: Boundary::Neumann,
+            triangulation: Triangulation::Auto,
             measure: 12.5,
             order: 499,
             notes: vec![],

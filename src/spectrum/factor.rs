@@ -16,7 +16,7 @@ mod symbolic;
 mod tests {
     use super::*;
     use crate::{
-        laplacian::{Mass, Operator, assemble},
+        laplacian::{Choice, Mass, Operator, assemble},
         spectrum::{
             krylov::Random,
             lanes::{Buffer, WIDTH},
@@ -64,7 +64,7 @@ mod tests {
             for (operator, mass) in
                 [(Operator::Fem, Mass::Consistent), (Operator::Fem, Mass::Lumped), (Operator::Cot, Mass::Lumped)]
             {
-                let laplacian = assemble(&mesh, operator, mass).unwrap();
+                let laplacian = assemble(&mesh, Choice::new(operator, mass)).unwrap();
                 let pencil = Pencil::new(&laplacian.matrix).unwrap();
                 let sigma = if operator == Operator::Cot { 0.01 * sigma } else { sigma };
                 let worst = residual(&pencil, sigma);

@@ -51,16 +51,16 @@ impl Pencil {
 /// Whether the rows of L sum to zero, but for rounding. The L of a connected piece of a surface has the constants as
 /// its kernel, or none where a boundary condition holds the piece: then rows beside the held vertices miss an entry.
 pub(super) fn has_kernel(matrix: &Symmetric) -> bool {
-    let mut sums = vec![0.0; matrix.order()];
+    let mut sums = vec![(0.0, 0.0_f64); matrix.order()];
     for (row, column, l, _) in matrix.entries() {
-        sums[row] += l;
+        let add = |(sum, size): &mut (f64, f64)| (*sum, *size) = (*sum + l, size.max(l.abs()));
+        add(&mut sums[row]);
         if row != column {
-            sums[column] += l;
+            add(&mut sums[column]);
         }
     }
-    // What was added up to the diagonal entry, and cancels here, is of its size.
-    let small = |(row, sum): (usize, &f64)| sum.abs() <= 1e-12 * matrix.stiffness[matrix.range(row).start].abs();
-    sums.iter().enumerate().all(small)
+    // Weights of both signs, large where triangles are flat, cancel in the diagonal entry as well as here.
+    sums.iter().all(|(sum, size)| sum.abs() <= 1e-12 * size)
 }
 
 fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {

@@ -4,7 +4,10 @@ use crate::query::{Parameter, Settings, Stage};
 
 /// Parameters by what turning one costs, the dearest first; the panel shows them in these groups.
 pub const GROUPS: [(&str, &[Parameter]); 3] = [
-    ("spectra", &[Parameter::Operator, Parameter::Mass, Parameter::Kmax]),
+    (
+        "spectra",
+        &[Parameter::Operator, Parameter::Mass, Parameter::Boundary, Parameter::Triangulation, Parameter::Kmax],
+    ),
     ("features", &[Parameter::Normalisation, Parameter::Distance]),
     ("read off", &[Parameter::K, Parameter::Rounds, Parameter::Cost, Parameter::Sel, Parameter::Class]),
 ];
@@ -20,6 +23,8 @@ pub const fn letter(parameter: Parameter) -> char {
     match parameter {
         Parameter::Operator => 'o',
         Parameter::Mass => 'm',
+        Parameter::Boundary => 'y',
+        Parameter::Triangulation => 'i',
         Parameter::Kmax => 'x',
         Parameter::Normalisation => 'n',
         Parameter::Distance => 'd',
@@ -66,7 +71,9 @@ pub const fn invalidates(parameter: Parameter) -> &'static [Stage] {
         Stage::Tables,
     ];
     match parameter {
-        Parameter::Operator | Parameter::Mass | Parameter::Kmax => SPECTRA,
+        Parameter::Operator | Parameter::Mass | Parameter::Boundary | Parameter::Triangulation | Parameter::Kmax => {
+            SPECTRA
+        }
         Parameter::Normalisation => FEATURES,
         Parameter::Distance => &[Stage::FirstK, Stage::ClimbError, Stage::ClimbAdr, Stage::Tables],
         Parameter::K | Parameter::Sel => &[Stage::Tables],
@@ -79,7 +86,9 @@ pub const fn invalidates(parameter: Parameter) -> &'static [Stage] {
 #[must_use]
 pub const fn price(parameter: Parameter) -> &'static str {
     match parameter {
-        Parameter::Operator | Parameter::Mass => "solves every spectrum that is not stored",
+        Parameter::Operator | Parameter::Mass | Parameter::Boundary | Parameter::Triangulation => {
+            "solves every spectrum that is not stored"
+        }
         Parameter::Kmax => "greater: solves the bands above; smaller: a slice",
         Parameter::Normalisation => "features and selections anew; no spectra",
         Parameter::Distance => "first-k and hill climbing anew; not AdaBoost",
@@ -160,7 +169,7 @@ mod tests {
         assert_eq!(parse(Parameter::Distance, "l"), "distance takes l2, l1, chi2");
         assert_eq!(parse(Parameter::Distance, "l1"), "= l1");
         assert_eq!(parse(Parameter::Operator, ""), "operator takes fem, cot");
-        assert_eq!(parse(Parameter::Mass, "lumpy"), "mass takes consistent, lumped");
+        assert_eq!(parse(Parameter::Mass, "lumpy"), "mass takes consistent, lumped, blended");
     }
 
     #[test]

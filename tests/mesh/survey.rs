@@ -169,7 +169,7 @@ fn what_has_no_spectrum_is_refused_with_a_reason() {
     let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     for (vertices, triangles, expected) in [
         (vec![], vec![], "there are no vertices"),
-        (square.clone(), vec![], "there are no faces, only 4 vertices"),
+        (square[..2].to_vec(), vec![], "there are no faces, only 2 vertices"),
         (square.clone(), vec![[0, 1, 2], [3, 3, 0]], "no face has an area"),
         (
             square.clone(),
@@ -189,12 +189,13 @@ fn what_has_no_spectrum_is_refused_with_a_reason() {
     ] {
         assert_eq!(refusal(vertices, triangles).as_deref(), Some(expected));
     }
-    assert_eq!(refusal(square, vec![[0, 1, 2], [0, 1, 3]]), None);
+    assert_eq!(refusal(square.clone(), vec![[0, 1, 2], [0, 1, 3]]), None);
+    assert_eq!(refusal(square, vec![]), None);
 }
 
 #[test]
 fn places_are_few_and_a_survey_can_be_stored() {
-    let mesh = Mesh::new(vec![[0.0; 3]; 50], Vec::new());
+    let mesh = Mesh::new(vec![[0.0; 3]; 53], vec![[50, 51, 52]]);
     let survey = survey(&mesh);
     let unused = survey.defects.iter().find(|defect| defect.kind == DefectKind::UnusedVertex).unwrap();
     assert_eq!((unused.count, unused.places.len(), unused.places[4]), (50, 5, Spot::Vertex(4)));

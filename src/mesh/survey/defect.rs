@@ -17,6 +17,8 @@ pub enum DefectKind {
     NotFinite,
     /// Triangles that name a vertex that does not exist.
     MissingVertex,
+    /// Vertices without any face: a point cloud.
+    NoFaces,
     /// Triangles that name a vertex twice.
     RepeatedVertex,
     /// Triangles of three vertices without area.
@@ -78,6 +80,11 @@ pub struct Defect {
 }
 
 impl Defect {
+    /// A defect of so many vertices, without places.
+    pub(super) fn of_all(kind: DefectKind, count: usize) -> Self {
+        Self { kind, count, places: Vec::new(), loops: 0 }
+    }
+
     /// Records a defect, unless `spots` is empty.
     pub(super) fn record(kind: DefectKind, spots: impl IntoIterator<Item = Spot>, into: &mut Vec<Self>) {
         let mut spots = spots.into_iter();
@@ -95,6 +102,7 @@ impl fmt::Display for Defect {
         match self.kind {
             DefectKind::NotFinite => write!(f, "{count} vertex position{plural} not finite")?,
             DefectKind::MissingVertex => write!(f, "{count} face{plural} naming a vertex that does not exist")?,
+            DefectKind::NoFaces => write!(f, "no faces: a point cloud of {count} vertices")?,
             DefectKind::RepeatedVertex => write!(f, "{count} face{plural} naming a vertex twice")?,
             DefectKind::ZeroArea => {
                 write!(f, "{count} zero-area face{plural} (height below {ZERO_HEIGHT:e} of the longest edge)")?;

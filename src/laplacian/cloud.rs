@@ -1,0 +1,98 @@
+//! Points without faces → the triangles of local triangulations (Sharp and Crane 2020, § 5.7).
+//!
+//! Around each point its nearest neighbours are laid into the plane that fits them best, and those triangles of their
+//! Delaunay triangulation are taken that have the point as a corner. Where the points sample a surface well, each
+//! triangle is found from each of its three corners, so all triangles together cover the surface three times.
+
+mod near;
+mod star;
+
+use self::near::Tree;
+use super::{
+    LaplacianError,
+    surface::{Surface, first_at_position, scaled},
+};
+use crate::mesh::Mesh;
+
+/// How many neighbours a local triangulation is made of, as in the reference implementation of the paper.
+pub(super) const NEIGHBOURS: usize = 30;
+
+/// By which part of the distance to its nearest neighbour a point is moved before triangles are chosen. Points of
+/// a grid lie four on a circle, and neighbouring local triangulations have to decide alike; they do so less often where
+/// the surface bends more. (Measured on a 40 × 80 grid on a torus: the area is 9.8 % too large with a thousandth, 0.2 %
+/// with a twentieth.)
+const NUDGE: f64 = 0.05;
+
+/// The triangles around every point; a triangle may be there up to three times.
+pub(super) fn surface(mesh: &Mesh) -> Result<Surface, LaplacianError> {
+    let mut notes = Vec::new();
+    let count = mesh.vertices().len();
+    if count > (u32::MAX / 256) as usize {
+        return Err(LaplacianError::TooLarge { triangles: 6 * count });
+    }
+    let (first, later) = first_at_position(mesh);
+    if later > 0 {
+        notes.push(format!("{later} vertices are at the position of another one: left out"));
+    }
+    let vertices: Vec<u32> =
+        (0..).zip(&first).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex).collect();
+    if vertices.len() < 3 {
+        return Err(LaplacianError::NoCloud { vertices: count });
+    }
+    let (points, exponent) = scaled(mesh, &vertices)?;
+    let triangles = triangles(&points);
+    if triangles.is_empty() {
+        return Err(LaplacianError::NoCloud { vertices: count });
+    }
+    let mut place = vec![u32::MAX; points.len()];
+    triangles.iter().flatten().for_each(|&point| place[point as usize] = 0);
+    let used: Vec<u32> = (0..points.len() as u32).filter(|&point| place[point as usize] == 0).collect();
+    if used.len() < points.len() {
+        notes.push(format!("{} vertices are in no triangle: left out", points.len() - used.len()));
+    }
+    for (at, &point) in (0..).zip(&used) {
+        place[point as usize] = at;
+    }
+    Ok(Surface {
+        points: used.iter().map(|&point| points[point as usize]).collect(),
+        triangles: triangles.into_iter().map(|triangle| triangle.map(|point| place[point as usize])).collect(),
+        vertices: used.iter().map(|&point| vertices[point as usize]).collect(),
+        exponent,
+        notes,
+    })
+}
+
+fn triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
+    let tree = Tree::new(points);
+    let mut found = Vec::new();
+    let nudged: Vec<[f64; 3]> = (0..points.len() as u32)
+        .map(|at| {
+            tree.nearest(points[at as usize], 2, &mut found);
+            let reach = found.iter().find(|near| near.1 != at).map_or(0.0, |near| near.0.sqrt());
+            nudged(points[at as usize], NUDGE * reach)
+        })
+        .collect();
+    let mut triangles = Vec::with_capacity(6 * points.len());
+    let mut ring = Vec::new();
+    for at in 0..points.len() as u32 {
+        tree.nearest(points[at as usize], NEIGHBOURS + 1, &mut found);
+        ring.clear();
+        ring.extend(found.iter().filter(|near| near.1 != at).map(|near| (near.1, nudged[near.1 as usize])));
+        star::star(nudged[at as usize], &ring, |b, c| triangles.push([at, b, c]));
+    }
+    triangles
+}
+
+/// The point moved by less than `by` along each axis, in a way that depends on nothing but the point.
+fn nudged(point: [f64; 3], by: f64) -> [f64; 3] {
+    let mut state = point.iter().fold(0_u64, |state, x| (state ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    point.map(|x| {
+        // SplitMix64.
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        x + by * ((z >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+    })
+}
