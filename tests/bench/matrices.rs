@@ -8,7 +8,7 @@
 use std::io::{BufWriter, Write};
 
 use eigenselect::{
-    laplacian::{Mass, Operator, assemble},
+    laplacian::{Choice, Mass, Operator, assemble},
     mesh::{Format, read},
 };
 
@@ -23,7 +23,7 @@ fn main() {
     };
     let format = Format::of(file.as_ref()).unwrap();
     let mesh = read(&std::fs::read(file).unwrap(), format).unwrap().canonical();
-    let laplacian = assemble(&mesh, operator, mass).unwrap();
+    let laplacian = assemble(&mesh, Choice::new(operator, mass)).unwrap();
     // Of an eigenvalue of the scaled pair `unit` times is one of the mesh.
     let unit = laplacian.unit();
     let entries: Vec<_> = laplacian.matrix.entries().collect();
