@@ -26,6 +26,7 @@ use crate::workbench::{State, View, shape::TALL};
 use ratatui::{Frame, layout::Rect};
 
 mod ascii;
+mod compare;
 mod confusion;
 mod curves;
 mod dots;
@@ -39,6 +40,7 @@ mod names;
 mod neighbours;
 mod number;
 mod overview;
+mod palette;
 mod pane;
 mod panel;
 mod pipeline;
@@ -107,6 +109,8 @@ fn screen(state: &State, pane: &mut Pane<'_>) {
     view(state, &mut pane.part(below));
     if state.help.is_some() {
         help::draw(state, pane);
+    } else if state.palette.is_some() {
+        palette::draw(state, pane);
     }
 }
 
@@ -121,5 +125,6 @@ fn view(state: &State, pane: &mut Pane<'_>) {
         View::Confusion => confusion::draw(state, pane),
         View::Neighbours => neighbours::draw(state, pane),
         View::Shape => shape::draw(state, pane),
+        View::Compare => compare::draw(state, pane),
     }
 }

@@ -16,7 +16,10 @@ pub use self::{
     history::History,
     message::{Command, Update},
     models::{Filter, ModelList, Only, Sort},
-    state::{Figure, Notice, State, View},
+    palette::Palette,
+    pins::{Pin, Sweep},
+    state::{Figure, Notice, Purpose, State, View},
+    trial::{Figures, Trial},
     update::update,
     why::{Matrix, Side, Why},
 };
@@ -29,9 +32,12 @@ mod history;
 pub mod keymap;
 mod message;
 mod models;
+pub mod palette;
 pub mod parameters;
+pub mod pins;
 pub mod shape;
 mod state;
+mod trial;
 mod update;
 mod why;
 pub mod worker;

@@ -5,12 +5,15 @@ mod replies;
 #[path = "screen/sample.rs"]
 mod sample;
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::Arc,
+    time::{Duration, Instant},
+};
 
 use eigenselect::{
-    query::{Answer, Parameter},
+    query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
-    workbench::{Action, Figure, Filter, State, View, keymap, shape::Style, update},
+    workbench::{Action, Figure, Filter, State, Trial, View, keymap, pins, shape::Style, update},
 };
 use ratatui::{
     Terminal,
@@ -116,6 +119,102 @@ fn a_shape_is_drawn_in_every_style() {
     };
     assert_eq!(colours(Shades::Few), 0);
     assert!(colours(Shades::Many) > 50 && colours(Shades::All) > 50);
+}
+
+#[test]
+fn an_eigenfunction_colours_the_shape() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Resize(SMALL.0, SMALL.1));
+    let mut state = shown(state, View::Shape);
+    let plain = drawn(&state, SMALL);
+    update(&mut state, Action::TurnFunction(1));
+    assert_eq!(state.function, Some(2), "the first eigenvalue selected");
+    update(&mut state, Action::TurnFunction(1));
+    let state = replies::served(state);
+    let drawn = buffer(&state, Look::default(), SMALL);
+    let count = |colour: Color| drawn.content.iter().filter(|cell| cell.fg == colour).count();
+    assert!(count(Color::Cyan) > 30 && count(Color::Magenta) > 30, "above and below 0");
+    assert!(text(&drawn).contains("eigenfunction 3 of λ"));
+    let without = Look { colour: false, ..Look::default() };
+    compare("Shape-function", &text(&buffer(&state, without, SMALL)));
+    assert_ne!(text(&buffer(&state, without, SMALL)), plain, "without colour the value shows as density");
+}
+
+/// Figures for pins: those of the sample with another T.
+fn tried(state: &State, settings: &Settings) -> Trial {
+    let mut figures = pins::present(state);
+    if let Some(boosted) = &mut figures.boosted {
+        Arc::make_mut(boosted).error.train = 1.0 / settings.rounds as f64;
+    }
+    Trial { settings: settings.clone(), figures }
+}
+
+#[test]
+fn settings_are_compared_with_pins() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Resize(SMALL.0, SMALL.1));
+    update(&mut state, Action::Pin);
+    update(&mut state, Action::Set(Parameter::Distance, "l1".to_owned()));
+    update(&mut state, Action::Set(Parameter::Rounds, "40".to_owned()));
+    update(&mut state, Action::Pin);
+    update(&mut state, Action::Undo);
+    update(&mut state, Action::Undo);
+    update(&mut state, Action::TurnMethod(-1));
+    let mut state = replies::served(shown(state, View::Compare));
+    assert_eq!(state.tried, [state.pins[1].settings.clone()], "the other pin is what is on the screen");
+    let trial = tried(&state, &state.pins[1].settings.clone());
+    update(&mut state, Action::Trial(Arc::new(trial)));
+    assert!(state.tried.is_empty());
+    compare("Compare-pins", &drawn(&state, SMALL));
+    update(&mut state, Action::Down);
+    update(&mut state, Action::Recall);
+    assert_eq!(state.settings.rounds, 40);
+    update(&mut state, Action::Unpin);
+    assert_eq!(state.pins.len(), 1);
+}
+
+#[test]
+fn a_sweep_fills_its_curve() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Resize(SMALL.0, SMALL.1));
+    update(&mut state, Action::TurnMethod(-1));
+    update(&mut state, Action::Sweep);
+    let swept = state.sweep.as_ref().unwrap().settings.clone();
+    assert_eq!(state.tried, swept);
+    for settings in swept.iter().take(9) {
+        let trial = tried(&state, settings);
+        update(&mut state, Action::Trial(Arc::new(trial)));
+    }
+    compare("Compare-sweep", &drawn(&state, SMALL));
+    update(&mut state, Action::Choose(Parameter::Distance));
+    update(&mut state, Action::Sweep);
+    let trial = tried(&state, &state.sweep.as_ref().unwrap().settings[1].clone());
+    update(&mut state, Action::Trial(Arc::new(trial)));
+    compare("Compare-words", &drawn(&state, SMALL));
+}
+
+#[test]
+fn the_palette_finds_commands_and_places() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Palette);
+    compare("palette-80x24", &drawn(&state, SMALL));
+    "armad".chars().for_each(|c| drop(update(&mut state, Action::Insert(c))));
+    compare("palette-typed", &drawn(&state, SMALL));
+    update(&mut state, Action::Pick);
+    assert_eq!((state.settings.class, state.view, state.palette), (14, View::Selection, None));
+}
+
+#[test]
+fn models_are_found_by_typing() {
+    let mut state = sample::state(sample::full());
+    update(&mut state, Action::Find);
+    "spr".chars().for_each(|c| drop(update(&mut state, Action::Insert(c))));
+    assert_eq!(state.models.listed(&state.answer).len(), 19);
+    update(&mut state, Action::CycleSort);
+    update(&mut state, Action::CycleSort);
+    compare("Models-found", &drawn(&state, SMALL));
+    update(&mut state, Action::Close);
+    assert_eq!(state.models.listed(&state.answer).len(), 380, "Esc lists all again");
 }
 
 #[test]

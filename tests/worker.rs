@@ -168,9 +168,50 @@ fn questions_are_answered_again_when_a_knob_changes_their_answer() {
     let reply = wait_for_reply(&updates, at(31));
     assert_eq!(reply.finding.as_ref().unwrap_err().as_ref(), "k = 31 is beyond kmax = 30");
     // A surface needs no study.
-    worker.send(Command::Look(vec![99, 0]));
+    worker.send(Command::Look(vec![
+        Question::Shape(99),
+        Question::Shape(0),
+        Question::Function { model: 0, index: 4 },
+        Question::Function { model: 1, index: 9999 },
+    ]));
     let reply = wait_for_reply(&updates, |reply| reply.question == Question::Shape(0));
-    assert!(matches!(&reply.finding, Ok(Finding::Shape(mesh)) if !mesh.triangles().is_empty()), "{reply:?}");
+    let Ok(Finding::Shape(mesh)) = &reply.finding else { panic!("{reply:?}") };
+    let vertices = mesh.vertices().len();
+    let function = |reply: &Reply| matches!(reply.question, Question::Function { .. });
+    let reply = wait_for_reply(&updates, function);
+    assert!(matches!(&reply.finding, Ok(Finding::Function(values)) if values.len() == vertices), "{reply:?}");
+    let reply = wait_for_reply(&updates, function);
+    assert_eq!(reply.finding.as_ref().unwrap_err().as_ref(), "the model has no eigenvalue 9999");
+}
+
+#[test]
+fn trials_are_made_beside_the_screen() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 5);
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    let whole = |answer: &Answer| settled(answer) && answer.members.len() == 15 && !answer.climb_error.stale;
+    let before = wait_for(&updates, whole);
+    let others = [1, 4].map(|rounds| Settings { rounds, ..small() });
+    worker.send(Command::Try(others.to_vec()));
+    let mut trials = Vec::new();
+    while trials.len() < 2 {
+        match updates.recv_timeout(Duration::from_mins(1)).unwrap() {
+            Update::Trial(trial) => trials.push(trial),
+            Update::Answer(answer) => assert_eq!(answer.settings, small(), "the screen's settings stay"),
+            other => panic!("{other:?}"),
+        }
+    }
+    for (trial, settings) in trials.iter().zip(&others) {
+        assert_eq!(trial.settings, *settings);
+        assert!(trial.figures.complete());
+        assert_eq!(trial.figures.climb_error, before.climb_error.value, "T does not change hill climbing");
+    }
+    // The same as when the screen's own knob is turned.
+    worker.send(Command::Set(others[0].clone()));
+    let after = wait_for(&updates, |answer| answer.settings == others[0] && settled(answer));
+    assert_eq!(trials[0].figures.boosted, after.boosted.value);
+    assert_eq!(trials[0].figures.test(&trials[0].figures, Method::Boost, false), Some(1.0));
 }
 
 #[test]

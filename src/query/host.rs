@@ -115,8 +115,22 @@ impl Host {
     /// A host whose pool tells `listener`; the news must come back through [`Host::hear`].
     pub(crate) fn with_listener(config: Config, listener: Listener) -> Self {
         let Config { data, settings, store, threads } = config;
-        let trace = Trace::default();
-        let library = Library::open(store, trace, &data.root);
+        let library = Library::open(store, Trace::default(), &data.root);
+        Self::over(library, data, settings, threads, listener)
+    }
+
+    /// A host on the same models for other parameters: it shares all that is costly, and has a database, a pool and an
+    /// account of its own.
+    pub(crate) fn beside(&self, settings: Settings) -> Self {
+        let (sender, news) = mpsc::channel();
+        let listener: Listener = Arc::new(move |news| {
+            let _ = sender.send(news);
+        });
+        let library = self.library.apart();
+        Self { news: Some(news), ..Self::over(library, self.data.clone(), settings, self.pool.size(), listener) }
+    }
+
+    fn over(library: Library, data: DataSet, settings: Settings, threads: usize, listener: Listener) -> Self {
         let database = Database::new(library.clone());
         let classes = Arc::new(data.classes.clone());
         Knobs::new(

@@ -84,14 +84,13 @@ struct Memory {
 
 /// The library. Clones share it.
 #[derive(Debug, Clone)]
-pub(crate) struct Library(Arc<Inner>);
+pub(crate) struct Library(Arc<Inner>, Trace);
 
 #[derive(Debug)]
 struct Inner {
     memory: Mutex<Memory>,
     solved: Condvar,
     store: Store,
-    trace: Trace,
     index: Key,
 }
 
@@ -102,7 +101,12 @@ impl Library {
         let contents = store.get::<Vec<(PathBuf, Stamp, ContentHash)>>(&index).unwrap_or_default();
         let contents = contents.into_iter().map(|(path, stamp, content)| (path, (stamp, content))).collect();
         let memory = Mutex::new(Memory { contents, ..Memory::default() });
-        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, trace, index }))
+        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, index }), trace)
+    }
+
+    /// The same library with an account of its own: work for others is not counted here.
+    pub(crate) fn apart(&self) -> Self {
+        Self(Arc::clone(&self.0), Trace::default())
     }
 
     fn memory(&self) -> MutexGuard<'_, Memory> {
@@ -110,7 +114,7 @@ impl Library {
     }
 
     pub(crate) fn trace(&self) -> &Trace {
-        &self.0.trace
+        &self.1
     }
 
     pub(crate) fn store(&self) -> &Store {

@@ -103,6 +103,11 @@ impl Pool {
         Self { shared, threads }
     }
 
+    /// How many threads it has.
+    pub(crate) fn size(&self) -> usize {
+        self.threads.len()
+    }
+
     /// Replaces the list of wanted jobs; the first is begun first. Returns the list's number.
     pub(crate) fn want(&self, jobs: Vec<(usize, Job)>) -> u64 {
         let mut wanted = self.shared.wanted();

@@ -10,17 +10,19 @@ use super::{
     db::{Cohort, Database, ModelFile},
     examined,
     inquiry::Members,
-    library::{self, Failure, FileAt, Library},
+    library::{self, Failure, FileAt, Library, Missing},
     reasons,
     stamp::Stamp,
 };
 use crate::{
     dataset::Role,
     mesh::{Format, Mesh},
+    spectrum::{self, Choice},
     study::{
         Honest, Method, Retrieved,
         why::{Decisions, Neighbours, Shared, Votes},
     },
+    watch::Unwatched,
 };
 
 /// Something that a view wants to know. Models are named by their place in [`Answer::models`](super::Answer::models).
@@ -43,6 +45,13 @@ pub enum Question {
     Honest,
     /// The surface of a model, in the canonical form that its eigenfunctions live on.
     Shape(usize),
+    /// An eigenfunction on the surface of a model.
+    Function {
+        /// The model.
+        model: usize,
+        /// The index of its eigenvalue, from 1.
+        index: usize,
+    },
 }
 
 /// What was found.
@@ -62,6 +71,8 @@ pub enum Finding {
     Honest(Arc<Honest>),
     /// Of [`Question::Shape`].
     Shape(Arc<Mesh>),
+    /// Of [`Question::Function`]: a value for each vertex of the shape.
+    Function(Arc<Vec<f64>>),
 }
 
 /// The answer to a question.
@@ -132,7 +143,7 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
         Question::Shared(class) => reasons::shared_rows(db, cohort, class).map(Finding::Shared),
         Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
         Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
-        Question::Shape(_) => Err("a surface is read from its file".into()),
+        Question::Shape(_) | Question::Function { .. } => Err("a surface is read from its file".into()),
     }
 }
 
@@ -141,7 +152,9 @@ pub(crate) struct Looking {
     pub(crate) library: Library,
     pub(crate) file: ModelAt,
     pub(crate) settings: Settings,
-    pub(crate) model: usize,
+    pub(crate) choice: Choice,
+    /// Of a shape, or of a function on it.
+    pub(crate) question: Question,
 }
 
 /// Where a model's mesh is.
@@ -158,15 +171,30 @@ impl ModelAt {
 }
 
 impl Looking {
-    /// Reads the mesh.
+    /// Reads the mesh, and computes the function where one is asked for.
     pub(crate) fn answer(self) -> Reply {
-        let Self { library, file, settings, model } = self;
-        let read = || {
-            let stamp = file.stamp.ok_or_else(|| Failure::from("the file is not there"))?;
-            let content = library.content(&file.path, stamp)?;
-            library::canonical(FileAt { path: &file.path, format: file.format, content })
+        let finding = self.find();
+        Reply { question: self.question, settings: self.settings, places: Arc::default(), finding }
+    }
+
+    fn find(&self) -> Result<Finding, Failure> {
+        let ModelAt { path, format, stamp } = &self.file;
+        let stamp = stamp.ok_or_else(|| Failure::from("the file is not there"))?;
+        let file = FileAt { path, format: *format, content: self.library.content(path, stamp)? };
+        let mesh = library::canonical(file)?;
+        let Question::Function { index, .. } = self.question else { return Ok(Finding::Shape(Arc::new(mesh))) };
+        let missing = |missing: Missing| match missing {
+            Missing::Failed(reason) | Missing::Unread(reason) => reason,
+            Missing::Cancelled => "it is no longer wanted".into(),
         };
-        let finding = read().map(|mesh| Finding::Shape(Arc::new(mesh)));
-        Reply { question: Question::Shape(model), settings, places: Arc::default(), finding }
+        let facts = self.library.facts(file).map_err(|unread| unread.reason)?;
+        let count = self.settings.kmax.max(index);
+        let found = self.library.spectrum(file, &facts, self.choice, count, &Unwatched).map_err(missing)?;
+        let place = index.checked_sub(1).filter(|&place| place < found.spectrum.count());
+        let place = place.ok_or_else(|| Failure::from(format!("the model has no eigenvalue {index}")))?;
+        let vectors = spectrum::eigenvectors(&mesh, self.choice, &found.spectrum, &[place], &Unwatched);
+        let vectors = vectors.map_err(|error| Failure::from(error.to_string()))?;
+        let first = vectors.into_iter().next().ok_or_else(|| Failure::from("no eigenfunction was found"))?;
+        Ok(Finding::Function(Arc::new(first.values)))
     }
 }

@@ -145,6 +145,10 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Reply(reply));
             }
+            Event::Update(Update::Trial(trial)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Trial(trial));
+            }
             Event::Update(Update::Rescanned) => self.apply(Action::Rescanned),
             Event::Update(Update::Picture(scene, picture)) => {
                 self.due.sooner(Due::Now);

@@ -11,7 +11,7 @@
 use ratatui::style::Modifier;
 
 use super::{look::Role, number, pane::Pane, text};
-use crate::workbench::{Entry, Notice, State, keymap, parameters};
+use crate::workbench::{Entry, Notice, Purpose, State, keymap, parameters};
 
 /// One or two lines, as high as the pane.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
@@ -88,15 +88,19 @@ pub(super) fn bar(share: f64, columns: usize) -> (String, String) {
 }
 
 fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
-    let parameter = state.parameter;
     let (before, after) = entry.parts();
-    let x = pane.spans(1, 0, [(parameter.name(), Role::Strong), (" = ", Role::Strong), (before.as_str(), Role::Plain)]);
+    let (name, sign) = match state.purpose {
+        Purpose::Value => (state.parameter.name(), " = "),
+        Purpose::Needle => ("models with", " "),
+    };
+    let x = pane.spans(1, 0, [(name, Role::Strong), (sign, Role::Strong), (before.as_str(), Role::Plain)]);
     let mut after = after.chars();
     let under = after.next().unwrap_or(' ').to_string();
     let x = pane.put(x, 0, &under, Role::Chosen);
     let x = pane.put(x, 0, after.as_str(), Role::Plain);
     let (says, role) = match &entry.error {
         Some(error) => (format!("× {error}"), Role::Bad),
+        None if state.purpose == Purpose::Needle => (String::new(), Role::Faint),
         None => (range(state), Role::Faint),
     };
     let room = (pane.width() as usize).saturating_sub(x as usize + 3);

@@ -66,7 +66,7 @@ pub(super) fn tabs(state: &State, pane: &mut Pane<'_>) {
     let brief: usize = View::ALL.iter().map(|view| view.brief().len() + 3).sum();
     let (gap, name): (&str, fn(View) -> &'static str) = match width {
         _ if long <= width => (" ", View::name),
-        _ if brief < width => ("", View::brief),
+        _ if brief <= width => ("", View::brief),
         _ => ("", |_| ""),
     };
     let mut x = 0;

@@ -57,7 +57,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let place = Rect::new(area.x + (area.width - wide) / 2, area.y + (area.height - high) / 2, wide, high);
     let mut pane = pane.part(place);
     pane.clear();
-    frame(&mut pane);
+    frame(&mut pane, " Keys ");
     let first = state.help.unwrap_or(0).min(rows.len().saturating_sub(lines * across));
     for (place, row) in rows.iter().skip(first).take(lines * across).enumerate() {
         let (x, y) = (2 + (place / lines) as u16 * (one + GAP), 1 + (place % lines) as u16);
@@ -82,7 +82,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     pane.put_right(wide.saturating_sub(2), high.saturating_sub(1), &more, Role::Faint);
 }
 
-fn frame(pane: &mut Pane<'_>) {
+/// Draws a box around the pane, with a title in its upper edge.
+pub(super) fn frame(pane: &mut Pane<'_>, title: &str) {
     let (right, bottom) = (pane.width().saturating_sub(1), pane.height().saturating_sub(1));
     let style = pane.style(Role::Faint);
     for x in 0..=right {
@@ -96,5 +97,5 @@ fn frame(pane: &mut Pane<'_>) {
     for (x, y, corner) in [(0, 0, '╭'), (right, 0, '╮'), (0, bottom, '╰'), (right, bottom, '╯')] {
         pane.dot(x, y, corner, style);
     }
-    pane.put(2, 0, " Keys ", Role::Strong);
+    pane.put(2, 0, title, Role::Strong);
 }

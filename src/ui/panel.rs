@@ -23,6 +23,8 @@ use crate::{
     workbench::{State, parameters},
 };
 
+/// Lines kept for the chosen parameter in words, with the gap above.
+const WORDS: usize = 5;
 /// Columns of the longest name.
 const NAME: usize = 13;
 
@@ -43,22 +45,52 @@ fn idle(state: &State, parameter: Parameter) -> bool {
     }
 }
 
-/// The panel beside the view.
-pub(super) fn column(state: &State, pane: &mut Pane<'_>) {
-    let roomy = pane.height() >= 24;
-    let mut y = 0;
+/// A line of the panel.
+enum Line {
+    Gap,
+    Title(&'static str),
+    Knob(Parameter),
+}
+
+/// The lines of the panel, with gaps between the groups where there is room for all.
+fn lines(roomy: bool) -> Vec<Line> {
+    let mut lines = Vec::new();
     for (title, group) in parameters::GROUPS {
-        if roomy && y > 0 {
-            y += 1;
+        if roomy && !lines.is_empty() {
+            lines.push(Line::Gap);
         }
-        pane.put(1, y, title, Role::Faint);
-        y += 1;
-        for &parameter in group {
-            row(state, parameter, y, pane);
-            y += 1;
+        lines.push(Line::Title(title));
+        lines.extend(group.iter().copied().map(Line::Knob));
+    }
+    lines
+}
+
+/// The panel beside the view: the parameters, those around the chosen one where not all fit, and the chosen one in
+/// words.
+pub(super) fn column(state: &State, pane: &mut Pane<'_>) {
+    let height = pane.height() as usize;
+    let roomy = lines(true).len() + WORDS < height;
+    let lines = lines(roomy);
+    let rows = lines.len().min(height.saturating_sub(WORDS).max(3));
+    let at = lines.iter().position(|line| matches!(line, Line::Knob(p) if *p == state.parameter)).unwrap_or(0);
+    let first = at.saturating_sub(rows / 2).min(lines.len() - rows);
+    for (y, line) in (0..).zip(lines.iter().skip(first).take(rows)) {
+        match line {
+            Line::Gap => {}
+            Line::Title(title) => {
+                pane.put(1, y, title, Role::Faint);
+            }
+            Line::Knob(parameter) => row(state, *parameter, y, pane),
         }
     }
-    y += u16::from(pane.height() >= y + 6);
+    let end = pane.width().saturating_sub(1);
+    if first > 0 {
+        pane.put_right(end, 0, "↑", Role::Faint);
+    }
+    if first + rows < lines.len() {
+        pane.put_right(end, rows as u16 - 1, "↓", Role::Faint);
+    }
+    let y = rows as u16 + u16::from(height > rows + WORDS || rows < lines.len());
     let mut rest = pane.area();
     pane::cut_top(&mut rest, y);
     words(state, &mut pane.part(pane::inset(rest, 1)));

@@ -85,8 +85,21 @@ fn title(state: &State, model: usize, pane: &mut Pane<'_>) {
         Style::Plain => "plain",
     };
     let end = pane.width().saturating_sub(1);
+    let function = state.function.map(|index| {
+        let value = row.eigenvalues.as_ref().and_then(|values| values.get(index - 1));
+        let value = value.map_or_else(String::new, |value| format!(" of λ {}", number::short(*value)));
+        match state.answered(&Question::Function { model, index }) {
+            Answered::Nothing(reason) => format!("eigenfunction {index}: {reason}"),
+            Answered::Awaited => format!("eigenfunction {index} …"),
+            Answered::Found(..) => format!("eigenfunction {index}{value}"),
+        }
+    });
     let right = format!("{shown} ×{:.1}", state.camera.scale());
     let room = |x: u16, said: &str| x as usize + 3 + text::width(said) + text::width(&right) + 2 < width;
+    if let Some(said) = function {
+        let free = width.saturating_sub(x as usize + 5 + text::width(&right));
+        x = pane.put(x + 2, 0, &text::fit(&said, free), Role::Strong);
+    }
     if let Some((vertices, triangles)) = row.size {
         let said = format!("{vertices} vertices · {triangles} triangles");
         if room(x, &said) {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Command, View,
+    Command, Trial, View,
     shape::{Picture, Scene},
 };
 use crate::query::{Answer, Parameter, Reply};
@@ -95,12 +95,38 @@ pub enum Action {
     Approach(i32),
     /// See the shape as at first.
     FirstLook,
+    /// Colour the shape by an eigenfunction so many indices further.
+    TurnFunction(isize),
+    /// Colour the shape by the eigenfunction of this index, from 1.
+    Eigenfunction(usize),
+    /// Colour the shape by no function.
+    NoFunction,
     /// Draw shapes with dots or with blocks.
     ToggleStyle,
     /// Show the model looked at as a shape.
     ShowShape,
     /// Give the view the whole screen, or no longer.
     ToggleAlone,
+    /// Open the command palette.
+    Palette,
+    /// Pick the palette's line.
+    Pick,
+    /// Type what the models listed have in their name or class.
+    Find,
+    /// Set a parameter to a value, given as text.
+    Set(Parameter, String),
+    /// Look at a model's neighbours.
+    LookAt(usize),
+    /// Put the settings on the screen aside.
+    Pin,
+    /// Remove the pin that the cursor is on.
+    Unpin,
+    /// Take the settings of the pin that the cursor is on.
+    Recall,
+    /// Sweep over the chosen parameter.
+    Sweep,
+    /// Show the sweep instead of the pins, or no longer.
+    ToggleSweep,
     /// The model before or after, wherever a model is shown.
     Step(isize),
     /// A character typed into the entry.
@@ -123,6 +149,8 @@ pub enum Action {
     Reply(Arc<Reply>),
     /// The files were looked at again.
     Rescanned,
+    /// Figures under other parameters.
+    Trial(Arc<Trial>),
     /// A scene that was painted.
     Picture(Scene, Arc<Picture>),
     /// The engine cannot go on.

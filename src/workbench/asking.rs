@@ -6,8 +6,8 @@
 use std::sync::Arc;
 
 use super::{
-    Figure, State, View, explore, parameters,
-    shape::{self, Camera, Scene},
+    Figure, State, View, explore, parameters, pins,
+    shape::{self, Camera, Function, Scene},
 };
 use crate::{
     query::{Finding, Parameter, Question, Reply, Stage},
@@ -42,7 +42,7 @@ impl Replies {
 
     /// Forgets all surfaces.
     pub fn clear_surfaces(&mut self) {
-        self.0.retain(|kept| !matches!(kept.question, Question::Shape(_)));
+        self.0.retain(|kept| !matches!(kept.question, Question::Shape(_) | Question::Function { .. }));
     }
 
     /// Forgets everything: the models have other places now.
@@ -60,22 +60,29 @@ pub fn questions(state: &State) -> Vec<Question> {
             vec![Question::Shared(state.settings.class)]
         }
         View::Confusion => vec![Question::Decisions(method)],
+        // The paired tests need what every method decides, here and for each pin.
+        View::Compare if !state.pins.is_empty() => pins::questions(),
         View::Neighbours => state.model().map(|model| Question::Reasons { method, model }).into_iter().collect(),
         _ => Vec::new(),
     }
 }
 
-/// The models whose surfaces are to be read: those shown, without those that are there or on their way.
+/// What is to be known of the shapes shown, without what is there or on its way.
 #[must_use]
-pub fn surfaces(state: &State) -> Vec<usize> {
+pub fn surfaces(state: &State) -> Vec<Question> {
     let shown = match state.view {
-        View::Models | View::Neighbours => pictured(state),
-        View::Shape => state.model().into_iter().collect(),
+        View::Models | View::Neighbours => pictured(state).into_iter().map(Question::Shape).collect(),
+        View::Shape => {
+            let of = |model: usize| {
+                let function = state.function.map(|index| Question::Function { model, index });
+                std::iter::once(Question::Shape(model)).chain(function)
+            };
+            state.model().into_iter().flat_map(of).collect()
+        }
         _ => Vec::new(),
     };
-    let missing =
-        |model: &usize| state.replies.find(&Question::Shape(*model)).is_none() && !state.looked_for.contains(model);
-    shown.into_iter().filter(missing).collect()
+    let there = |question: &Question| state.replies.find(question).is_some_and(|reply| !state.outdated(reply));
+    shown.into_iter().filter(|question| !there(question) && !state.looked_for.contains(question)).collect()
 }
 
 /// The models of which there are small pictures: the one looked at, and in the view of neighbours those around the
@@ -108,7 +115,15 @@ pub fn scenes(state: &State) -> Vec<Scene> {
         _ => None,
     };
     let scene = |model: usize, camera: Camera, cells: (u16, u16)| {
-        Some(Scene { model, mesh: mesh(model)?, function: None, camera, cells, style: state.style })
+        let found = state.function.and_then(|index| {
+            let question = Question::Function { model, index };
+            match &state.replies.find(&question).filter(|reply| !state.outdated(reply))?.finding {
+                Ok(Finding::Function(values)) => Some(Function { index, values: Arc::clone(values) }),
+                _ => None,
+            }
+        });
+        let function = found.filter(|_| cells != shape::THUMB);
+        Some(Scene { model, mesh: mesh(model)?, function, camera, cells, style: state.style })
     };
     match state.view {
         View::Shape => {
@@ -155,6 +170,9 @@ impl State {
         let matters = |parameter: Parameter| {
             let stage = match reply.question {
                 Question::Shape(_) => return false,
+                // More eigenvalues do not change those that are there.
+                Question::Function { .. } if parameter == Parameter::Kmax => return false,
+                Question::Function { .. } => Stage::Spectrum,
                 Question::Shared(_) => Stage::Features,
                 // Every method has a part in them; what is only read off a method's rows has none.
                 Question::Retrieval | Question::Honest => {
@@ -171,7 +189,8 @@ impl State {
         };
         let differs = |parameter: Parameter| self.settings.get(parameter) != reply.settings.get(parameter);
         Parameter::ALL.into_iter().any(|parameter| differs(parameter) && matters(parameter))
-            || (!matches!(reply.question, Question::Shape(_)) && reply.places.len() != self.answer.members.len())
+            || (!matches!(reply.question, Question::Shape(_) | Question::Function { .. })
+                && reply.places.len() != self.answer.members.len())
     }
 }
 

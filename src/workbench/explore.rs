@@ -1,6 +1,10 @@
 //! Going from a figure to the models behind it, and back.
 
-use super::{Action, Answered, Only, State, View, Why, shape::Camera, update, why::Matrix};
+use std::sync::Arc;
+
+use super::{
+    Action, Answered, Entry, Only, Purpose, State, Sweep, View, Why, pins, shape::Camera, update, why::Matrix,
+};
 use crate::query::{Finding, Question};
 
 /// So many steps back are remembered.
@@ -26,6 +30,16 @@ pub(super) fn look(state: &mut State, action: &Action) {
         Action::Orbit(right, up) => state.camera.turn(*right, *up),
         Action::Approach(steps) => state.camera.approach(*steps),
         Action::FirstLook => state.camera = Camera::default(),
+        Action::TurnFunction(by) => turn_function(state, *by),
+        Action::Eigenfunction(index) => state.function = Some((*index).clamp(1, state.settings.kmax)),
+        Action::NoFunction => state.function = None,
+        Action::Find => {
+            update::show(state, View::Models);
+            state.purpose = Purpose::Needle;
+            state.entry = Some(Entry::default());
+        }
+        Action::LookAt(model) => look_at(state, *model),
+        Action::Pin | Action::Unpin | Action::Sweep | Action::ToggleSweep => compare(state, action),
         Action::ToggleStyle => state.style = state.style.turned(),
         Action::ToggleAlone => state.alone = !state.alone,
         Action::ShowShape => {
@@ -35,7 +49,7 @@ pub(super) fn look(state: &mut State, action: &Action) {
         Action::Open => open(state),
         Action::Back => back(state),
         Action::Step(by) => {
-            let answer = std::sync::Arc::clone(&state.answer);
+            let answer = Arc::clone(&state.answer);
             state.models.shift(*by, &answer);
             state.why.neighbour = 0;
         }
@@ -43,8 +57,52 @@ pub(super) fn look(state: &mut State, action: &Action) {
     }
 }
 
+fn look_at(state: &mut State, model: usize) {
+    remember(state);
+    let answer = Arc::clone(&state.answer);
+    state.models.look_at(model, &answer);
+    state.why.neighbour = 0;
+    if !matches!(state.view, View::Neighbours | View::Shape) {
+        update::show(state, View::Neighbours);
+    }
+}
+
+fn compare(state: &mut State, action: &Action) {
+    match action {
+        Action::Pin => {
+            let said = pins::pin(state).map(|letter| format!("these settings are pin {letter}; 0 compares"));
+            update::say(state, said.unwrap_or_else(|reason| reason));
+        }
+        Action::Unpin if !state.pins.is_empty() => {
+            let at = state.pin.min(state.pins.len() - 1);
+            state.pins.remove(at);
+        }
+        Action::Sweep => {
+            state.sweep = Some(Sweep::over(state.parameter, &state.settings, state.answer.classes.len()));
+            state.why.swept = true;
+            update::show(state, View::Compare);
+        }
+        Action::ToggleSweep => state.why.swept = !state.why.swept,
+        _ => {}
+    }
+}
+
+/// Lists the models that have this in their name or class.
+pub(super) fn find(state: &mut State, needle: String) {
+    change(state, |list| list.needle = needle);
+}
+
+/// The first eigenfunction shown is that of the first eigenvalue selected that is not 0.
+fn turn_function(state: &mut State, by: isize) {
+    let selected = || state.answer.climb_error.value.as_ref()?.climb.selected.iter().copied().find(|&index| index > 1);
+    state.function = match state.function {
+        None => Some(selected().unwrap_or(2) as usize),
+        Some(index) => Some(index.saturating_add_signed(by).clamp(1, state.settings.kmax)),
+    };
+}
+
 fn change(state: &mut State, change: impl FnOnce(&mut super::ModelList)) {
-    let answer = std::sync::Arc::clone(&state.answer);
+    let answer = Arc::clone(&state.answer);
     state.models.change(&answer, change);
 }
 
@@ -73,7 +131,7 @@ fn remember(state: &mut State) {
 fn back(state: &mut State) {
     let Some((view, model)) = state.trail.pop() else { return };
     if let Some(model) = model {
-        let answer = std::sync::Arc::clone(&state.answer);
+        let answer = Arc::clone(&state.answer);
         state.models.look_at(model, &answer);
     }
     state.why.neighbour = 0;
@@ -132,7 +190,7 @@ fn open_cell(state: &mut State) {
         list.only = Some(Only { label, models });
     });
     if let Some(first) = first {
-        let answer = std::sync::Arc::clone(&state.answer);
+        let answer = Arc::clone(&state.answer);
         state.models.look_at(first, &answer);
     }
     update::show(state, View::Models);
@@ -164,7 +222,7 @@ fn open_neighbour(state: &mut State) {
     let Some((_, models)) = neighbours(state) else { return };
     let Some(&model) = models.get(state.why.neighbour.min(models.len().saturating_sub(1))) else { return };
     remember(state);
-    let answer = std::sync::Arc::clone(&state.answer);
+    let answer = Arc::clone(&state.answer);
     state.models.look_at(model, &answer);
     state.why.neighbour = 0;
 }

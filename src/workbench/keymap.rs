@@ -67,6 +67,8 @@ pub enum Context {
     Views,
     /// While a value is typed.
     Entry,
+    /// While the command palette is open.
+    Palette,
     /// While the help is open.
     Help,
     /// Always.
@@ -75,7 +77,7 @@ pub enum Context {
 
 impl Context {
     /// All contexts, in the order of the help.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Views,
         Self::In(View::Overview),
         Self::In(View::Curves),
@@ -86,7 +88,9 @@ impl Context {
         Self::In(View::Confusion),
         Self::In(View::Neighbours),
         Self::In(View::Shape),
+        Self::In(View::Compare),
         Self::Entry,
+        Self::Palette,
         Self::Help,
         Self::Always,
     ];
@@ -97,7 +101,8 @@ impl Context {
         match self {
             Self::In(view) => view.name(),
             Self::Views => "Everywhere",
-            Self::Entry => "Typing a value",
+            Self::Entry => "Typing",
+            Self::Palette => "Command palette",
             Self::Help => "Help",
             Self::Always => "Always",
         }
@@ -142,6 +147,8 @@ pub fn bindings() -> Vec<Binding> {
 pub fn contexts(state: &State) -> Vec<Context> {
     if state.help.is_some() {
         vec![Context::Help, Context::Always]
+    } else if state.palette.is_some() {
+        vec![Context::Palette, Context::Always]
     } else if state.entry.is_some() {
         vec![Context::Entry, Context::Always]
     } else {
@@ -159,7 +166,7 @@ pub fn action(state: &State, key: Key) -> Option<Action> {
     });
     match (bound, key) {
         (Some(action), _) => Some(action),
-        (None, Key::Char(character)) if state.entry.is_some() && state.help.is_none() => {
+        (None, Key::Char(character)) if (state.entry.is_some() || state.palette.is_some()) && state.help.is_none() => {
             Some(Action::Insert(character))
         }
         _ => None,

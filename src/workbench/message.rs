@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use super::shape::{Picture, Scene};
+use super::{
+    Trial,
+    shape::{Picture, Scene},
+};
 use crate::query::{Answer, Question, Reply, Settings};
 
 /// An order to the engine.
@@ -12,8 +15,10 @@ pub enum Command {
     Set(Settings),
     /// Answer these questions, now and whenever their answers change; they replace the questions before.
     Ask(Vec<Question>),
-    /// Read the surfaces of these models, places in the answer's list.
-    Look(Vec<usize>),
+    /// Answer these questions about shapes, once.
+    Look(Vec<Question>),
+    /// Make the study under these parameters, beside the one on the screen; they replace those before.
+    Try(Vec<Settings>),
     /// Paint these scenes; they replace those before.
     Paint(Vec<Scene>),
     /// Look at the files again.
@@ -35,6 +40,8 @@ pub enum Update {
     Reply(Arc<Reply>),
     /// The files were looked at again: surfaces may be others now.
     Rescanned,
+    /// Figures under other parameters.
+    Trial(Arc<Trial>),
     /// A scene that was painted.
     Picture(Scene, Arc<Picture>),
     /// The engine cannot go on, and why.

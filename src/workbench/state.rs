@@ -3,7 +3,7 @@
 use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
-    Entry, History, ModelList, Replies, Why, parameters,
+    Entry, History, ModelList, Palette, Pin, Replies, Sweep, Why, parameters,
     shape::{Camera, Pictures, Scene, Style},
 };
 use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
@@ -30,11 +30,13 @@ pub enum View {
     Neighbours,
     /// One model as a shape.
     Shape,
+    /// The settings beside others that were put aside, and a sweep.
+    Compare,
 }
 
 impl View {
     /// All of them, in the order of their keys.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Overview,
         Self::Curves,
         Self::Tables,
@@ -44,6 +46,7 @@ impl View {
         Self::Confusion,
         Self::Neighbours,
         Self::Shape,
+        Self::Compare,
     ];
 
     /// Its name on the tab.
@@ -59,6 +62,7 @@ impl View {
             Self::Confusion => "Confusion",
             Self::Neighbours => "Neighbours",
             Self::Shape => "Shape",
+            Self::Compare => "Compare",
         }
     }
 
@@ -71,6 +75,7 @@ impl View {
             Self::Pipeline => "Runs",
             Self::Confusion => "Errors",
             Self::Neighbours => "Near",
+            Self::Compare => "Pins",
             other => other.name(),
         }
     }
@@ -95,6 +100,16 @@ pub enum Figure {
     Climb,
     /// Where the class's models keep together.
     Shared,
+}
+
+/// What a line that is typed is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Purpose {
+    /// A value of the chosen parameter.
+    #[default]
+    Value,
+    /// What the models listed have in their name or class.
+    Needle,
 }
 
 /// A line for the user, shown until the next key, or only until the next answer.
@@ -145,8 +160,22 @@ pub struct State {
     pub asked: Vec<Question>,
     /// What it answered.
     pub replies: Replies,
-    /// The models whose surfaces are being read for it.
-    pub looked_for: BTreeSet<usize>,
+    /// What it was asked of shapes and has not answered yet.
+    pub looked_for: Vec<Question>,
+    /// The eigenfunction that colours the shape, the index of its eigenvalue from 1.
+    pub function: Option<usize>,
+    /// The command palette, while it is open.
+    pub palette: Option<Palette>,
+    /// What the entry is for.
+    pub purpose: Purpose,
+    /// Settings put aside.
+    pub pins: Vec<Pin>,
+    /// The pin that the keys act on; may lie beyond the end.
+    pub pin: usize,
+    /// A sweep over one parameter.
+    pub sweep: Option<Sweep>,
+    /// The settings that are being tried for pins and sweep.
+    pub tried: Vec<Settings>,
     /// Where shapes are seen from.
     pub camera: Camera,
     /// How shapes become characters.
@@ -191,7 +220,14 @@ impl State {
             trail: Vec::new(),
             asked: Vec::new(),
             replies: Replies::default(),
-            looked_for: BTreeSet::new(),
+            looked_for: Vec::new(),
+            function: None,
+            palette: None,
+            purpose: Purpose::default(),
+            pins: Vec::new(),
+            pin: 0,
+            sweep: None,
+            tried: Vec::new(),
             camera: Camera::default(),
             style: Style::default(),
             scenes: Vec::new(),

@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Action, Command, Effect, Entry, Figure, Leave, Notice, State, View, asking, explore, parameters};
-use crate::query::{Answer, Parameter, Question, Settings};
+use super::{
+    Action, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore, palette,
+    parameters, pins,
+};
+use crate::query::{Answer, Parameter, Settings};
 
 /// Lets an action happen. Returns what must now happen outside; never waits.
 pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
@@ -16,8 +19,17 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
     }
     let surfaces = asking::surfaces(state);
     if !surfaces.is_empty() {
-        state.looked_for.extend(&surfaces);
+        state.looked_for.extend(surfaces.iter().cloned());
         effects.push(Effect::Send(Command::Look(surfaces)));
+    }
+    let untried = pins::untried(state);
+    if untried != state.tried {
+        // What has come in meanwhile makes the list shorter, and nothing need be said.
+        let known = untried.iter().all(|settings| state.tried.contains(settings));
+        state.tried.clone_from(&untried);
+        if !known {
+            effects.push(Effect::Send(Command::Try(untried)));
+        }
     }
     let scenes = asking::scenes(state);
     if scenes != state.scenes {
@@ -35,6 +47,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             | Action::Reply(_)
             | Action::Picture(..)
             | Action::Rescanned
+            | Action::Trial(_)
             | Action::Resize(..)
             | Action::Report(_)
             | Action::Fatal(_)
@@ -64,11 +77,15 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Commit => return commit(state),
         Action::Answer(answer) => receive(state, answer),
         Action::Reply(reply) => {
-            if let Question::Shape(model) = reply.question {
-                state.looked_for.remove(&model);
-            }
+            state.looked_for.retain(|question| *question != reply.question);
             state.replies.take(reply);
+            pins::complete(state);
         }
+        Action::Trial(trial) => pins::take(state, &trial),
+        Action::Palette => state.palette = Some(Palette::default()),
+        Action::Pick => return pick(state),
+        Action::Set(parameter, value) => return set(state, parameter, &value),
+        Action::Recall => return recall(state),
         Action::Rescanned => {
             state.replies.clear_surfaces();
             state.looked_for.clear();
@@ -83,7 +100,10 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
         Action::Insert(_) | Action::Erase | Action::EraseAll | Action::Left | Action::Right => typed(state, &action),
-        Action::Edit => state.entry = Some(Entry::default()),
+        Action::Edit => {
+            state.purpose = Purpose::Value;
+            state.entry = Some(Entry::default());
+        }
         other => look(state, &other),
     }
     Vec::new()
@@ -94,8 +114,12 @@ fn look(state: &mut State, action: &Action) {
     match action {
         Action::Help => state.help = if state.help.is_some() { None } else { Some(0) },
         Action::Close => {
+            if state.entry.is_some() && state.purpose == Purpose::Needle {
+                explore::find(state, String::new());
+            }
             state.help = None;
             state.entry = None;
+            state.palette = None;
         }
         Action::Show(view) => show(state, *view),
         Action::NextView => show(state, state.view.turned(1)),
@@ -154,7 +178,8 @@ fn choose(state: &mut State, parameter: Parameter) {
 
 /// One line up or down: in the help, in the list of models, else in the panel of parameters.
 fn step(state: &mut State, by: isize) {
-    if state.help.is_some() || matches!(state.view, View::Models | View::Neighbours) {
+    let lists = matches!(state.view, View::Models | View::Neighbours | View::Compare);
+    if lists || state.help.is_some() || state.palette.is_some() {
         scroll(state, by);
         return;
     }
@@ -169,13 +194,21 @@ fn page(state: &mut State, by: isize) {
 }
 
 fn scroll(state: &mut State, by: isize) {
-    if let Some(line) = &mut state.help {
+    if state.palette.is_some() {
+        let last = palette::picks(state).len().saturating_sub(1);
+        if let Some(palette) = &mut state.palette {
+            palette.at = palette.at.saturating_add_signed(by).min(last);
+        }
+    } else if let Some(line) = &mut state.help {
         *line = line.saturating_add_signed(by).min(super::keymap::lines());
     } else if state.view == View::Models {
         let answer = Arc::clone(&state.answer);
         state.models.shift(by, &answer);
     } else if state.view == View::Neighbours {
         explore::shift_neighbour(state, by);
+    } else if state.view == View::Compare {
+        let last = state.pins.len().saturating_sub(1);
+        state.pin = state.pin.min(last).saturating_add_signed(by).min(last);
     } else {
         state.scroll = state.scroll.saturating_add_signed(by).min(furthest(state));
     }
@@ -187,7 +220,13 @@ fn furthest(state: &State) -> usize {
         View::Tables => state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| t.rows.len() + 4).sum(),
         View::Pipeline => state.answer.warnings.len(),
         View::Selection => state.answer.marks.value.iter().flat_map(|m| m.iter()).map(Vec::len).max().unwrap_or(0),
-        View::Overview | View::Curves | View::Models | View::Confusion | View::Neighbours | View::Shape => 0,
+        View::Overview
+        | View::Curves
+        | View::Models
+        | View::Confusion
+        | View::Neighbours
+        | View::Shape
+        | View::Compare => 0,
     }
 }
 
@@ -252,13 +291,22 @@ fn travel(state: &mut State, back: bool) -> Vec<Effect> {
 }
 
 fn typed(state: &mut State, action: &Action) {
-    let Some(entry) = &mut state.entry else { return };
+    let entry = match (&mut state.palette, &mut state.entry) {
+        (Some(palette), _) => {
+            palette.at = 0;
+            &mut palette.entry
+        }
+        (None, Some(entry)) => entry,
+        (None, None) => return,
+    };
     match action {
         Action::Insert(character) => entry.insert(*character),
         Action::Erase => {
             let erased = entry.erase();
             if !erased && entry.text().is_empty() {
                 state.entry = None;
+                state.palette = None;
+                return;
             }
         }
         Action::EraseAll => entry.erase_all(),
@@ -266,11 +314,19 @@ fn typed(state: &mut State, action: &Action) {
         Action::Right => entry.shift(1),
         _ => {}
     }
+    if let Some(entry) = state.entry.as_ref().filter(|_| state.purpose == Purpose::Needle) {
+        let needle = entry.text();
+        explore::find(state, needle);
+    }
 }
 
 fn commit(state: &mut State) -> Vec<Effect> {
     let Some(entry) = &mut state.entry else { return Vec::new() };
     let text = entry.text();
+    if state.purpose == Purpose::Needle {
+        state.entry = None;
+        return Vec::new();
+    }
     if text.trim().is_empty() {
         state.entry = None;
         return Vec::new();
@@ -288,6 +344,32 @@ fn commit(state: &mut State) -> Vec<Effect> {
             Vec::new()
         }
     }
+}
+
+/// Lets everything happen that the palette's line stands for.
+fn pick(state: &mut State) -> Vec<Effect> {
+    let picks = palette::picks(state);
+    let Some(open) = state.palette.take() else { return Vec::new() };
+    let pick = picks.into_iter().nth(open.at);
+    pick.map_or_else(Vec::new, |pick| pick.does.into_iter().flat_map(|action| happen(state, action)).collect())
+}
+
+fn set(state: &mut State, parameter: Parameter, value: &str) -> Vec<Effect> {
+    let mut next = state.settings.clone();
+    match next.set(parameter, value, state.answer.classes.len()) {
+        Ok(()) => adopt(state, next, None),
+        Err(reason) => {
+            say(state, reason);
+            Vec::new()
+        }
+    }
+}
+
+fn recall(state: &mut State) -> Vec<Effect> {
+    let Some(pin) = state.pins.get(state.pin.min(state.pins.len().saturating_sub(1))) else { return Vec::new() };
+    let (letter, settings) = (pin.letter, pin.settings.clone());
+    say(state, format!("the settings of pin {letter}; u undoes"));
+    adopt(state, settings, None)
 }
 
 fn receive(state: &mut State, answer: Arc<Answer>) {

@@ -63,6 +63,8 @@ pub struct Why {
     pub neighbour: usize,
     /// Where there is room for one of them: the two spectra instead of the terms.
     pub overlaid: bool,
+    /// Where there is room for one of them: the sweep instead of the pins.
+    pub swept: bool,
 }
 
 impl Why {

@@ -11,7 +11,11 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Command, Update, shape::Painter};
+use super::{
+    Command, Trial, Update,
+    shape::Painter,
+    trial::{self, Recall},
+};
 use crate::{
     dataset::{self, DataSet},
     query::{Config, Host, Members, News, Piece, Question, Reply, Settings},
@@ -49,6 +53,8 @@ enum Message {
     Reply(u64, Reply),
     /// A surface that was read.
     Surface(Reply),
+    /// Figures under other parameters.
+    Trial(Trial),
 }
 
 /// The worker. Dropping it asks the thread to end and does not wait for a long computation.
@@ -141,6 +147,8 @@ struct Desk<'a> {
     /// What the screen wants to know, and how often it was asked.
     questions: Vec<Question>,
     askings: u64,
+    /// Calls off the trials under way.
+    recall: Recall,
     publish_at: Option<Instant>,
     saved: bool,
     /// Looks at the folder that are left for files that were in the middle of a change, and when the next one is due.
@@ -171,6 +179,7 @@ impl<'a> Desk<'a> {
             studies: 0,
             questions: Vec::new(),
             askings: 0,
+            recall: Recall::default(),
             publish_at: Some(now),
             saved: false,
             looks: LOOKS,
@@ -196,8 +205,11 @@ impl<'a> Desk<'a> {
                 match message {
                     Message::Command(Command::Set(settings)) => newest = Some(settings),
                     Message::Command(Command::Ask(questions)) => asked = Some(questions),
-                    Message::Command(Command::Look(models)) => self.look(&models),
+                    Message::Command(Command::Look(questions)) => self.look(questions),
+                    Message::Command(Command::Try(settings)) => self.try_out(settings),
+                    Message::Trial(trial) => (self.notify)(Update::Trial(Arc::new(trial))),
                     Message::Command(Command::Quit) => {
+                        self.recall.call();
                         self.host.save();
                         return;
                     }
@@ -252,7 +264,12 @@ impl<'a> Desk<'a> {
             },
             Command::Stop => self.host.stop(),
             Command::Resume => self.host.resume(),
-            Command::Set(_) | Command::Ask(_) | Command::Look(_) | Command::Paint(_) | Command::Quit => {}
+            Command::Set(_)
+            | Command::Ask(_)
+            | Command::Look(_)
+            | Command::Try(_)
+            | Command::Paint(_)
+            | Command::Quit => {}
         }
         self.publish_within(GRACE);
     }
@@ -328,13 +345,29 @@ impl<'a> Desk<'a> {
     }
 
     /// Reads surfaces, all on one thread: nobody looks at several at once for long.
-    fn look(&mut self, models: &[usize]) {
-        let looking: Vec<_> = models.iter().filter_map(|&model| self.host.look(model)).collect();
+    fn look(&mut self, questions: Vec<Question>) {
+        let looking: Vec<_> = questions.into_iter().filter_map(|question| self.host.look(question)).collect();
         let outbox = self.outbox.clone();
         let begun = std::thread::Builder::new().name("surfaces".into()).spawn(move || {
             for looking in looking {
                 let _ = outbox.send(Message::Surface(looking.answer()));
             }
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Makes the study under other parameters, on a thread with a host of its own that shares the spectra.
+    fn try_out(&mut self, settings: Vec<Settings>) {
+        self.recall.call();
+        self.recall = Recall::default();
+        let Some(first) = settings.first() else { return };
+        let (host, recall, outbox) = (self.host.beside(first.clone()), self.recall.clone(), self.outbox.clone());
+        let begun = std::thread::Builder::new().name("trial".into()).spawn(move || {
+            trial::run(host, settings, &recall, &|trial| {
+                let _ = outbox.send(Message::Trial(trial));
+            });
         });
         if let Err(error) = begun {
             self.host.warn(&format!("the system has no thread to give: {error}"));

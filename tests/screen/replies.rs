@@ -69,7 +69,7 @@ fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc
         Question::Shared(class) => why::shared(&sample, class, answer.settings.kmax)
             .map(|shared| Finding::Shared(Arc::new(shared)))
             .ok_or_else(|| "the class has fewer than two training models".into()),
-        Question::Shape(_) => Err("the file is not there".into()),
+        Question::Shape(_) | Question::Function { .. } => Err("the file is not there".into()),
         Question::Retrieval | Question::Honest => Err("there are no models to compare".into()),
     };
     (found, places)
@@ -109,15 +109,22 @@ pub fn served(mut state: State) -> State {
             update(&mut state, Action::Reply(Arc::new(reply)));
         }
         let ring = ring();
-        while let Some(&model) = state.looked_for.first() {
-            let (question, places) = (Question::Shape(model), Arc::default());
-            let finding = Ok(Finding::Shape(Arc::clone(&ring)));
-            let reply = Reply { question, settings: answer.settings.clone(), places, finding };
+        while let Some(question) = state.looked_for.first().cloned() {
+            let finding = match question {
+                Question::Function { index, .. } => {
+                    // Waves around the ring.
+                    let wave = |p: &[f64; 3]| (index as f64 * p[2].atan2(p[0])).sin();
+                    Ok(Finding::Function(Arc::new(ring.vertices().iter().map(wave).collect())))
+                }
+                _ => Ok(Finding::Shape(Arc::clone(&ring))),
+            };
+            let reply = Reply { question, settings: answer.settings.clone(), places: Arc::default(), finding };
             update(&mut state, Action::Reply(Arc::new(reply)));
         }
         for scene in state.scenes.clone() {
-            let picture =
-                Picture::paint(&Solid::new(&scene.mesh), scene.camera, scene.pixels(), scene.style.aspect(), None);
+            let values = scene.function.as_ref().map(|function| function.values.as_slice());
+            let solid = Solid::new(&scene.mesh);
+            let picture = Picture::paint(&solid, scene.camera, scene.pixels(), scene.style.aspect(), values);
             update(&mut state, Action::Picture(scene, Arc::new(picture)));
         }
     }

@@ -72,10 +72,13 @@ impl Host {
         Ok(reply.map_or_else(|| Err("internal error in the study, please report it".into()), |reply| reply.finding))
     }
 
-    /// Prepares the reading of a model's surface on another thread. None when there is no such model.
-    pub(crate) fn look(&self, model: usize) -> Option<Looking> {
+    /// Prepares the reading of a model's surface, or a function on it, on another thread. None when there is no such
+    /// model, or the question is another.
+    pub(crate) fn look(&self, question: Question) -> Option<Looking> {
+        let (Question::Shape(model) | Question::Function { model, .. }) = question else { return None };
         let file = ModelAt::of(&self.database, self.rows.get(model)?.file);
-        Some(Looking { library: self.library.clone(), file, settings: self.settings.clone(), model })
+        let choice = self.settings.choice();
+        Some(Looking { library: self.library.clone(), file, settings: self.settings.clone(), choice, question })
     }
 
     /// Takes in a value of the study of `members`.

@@ -42,7 +42,7 @@ fn in_views() -> Vec<Row> {
         (Views, vec![(Char('R'), Action::ResetAll)], "", "every parameter's first value", ""),
         (Views, vec![(Char('u'), Action::Undo)], "", "undo the last change of parameters", "undo"),
         (Views, vec![(Char('U'), Action::Redo), (Ctrl('r'), Action::Redo)], "", "redo", ""),
-        (Views, numbers(), "1 – 9", "show that view", "view"),
+        (Views, numbers(), "1 – 0", "show that view", "view"),
         (
             Views,
             vec![(Tab, Action::NextView), (BackTab, Action::PreviousView)],
@@ -68,6 +68,16 @@ fn in_views() -> Vec<Row> {
         (Views, vec![(Char('z'), Action::ToggleAlone)], "", "the view alone, or with the parameters", ""),
         (Views, vec![(Char(' '), Action::ToggleSolving)], "", "stop solving spectra, go on", ""),
         (Views, vec![(F(5), Action::Rescan)], "", "look at the files again", ""),
+        (
+            Views,
+            vec![(Char(':'), Action::Palette), (Ctrl('p'), Action::Palette)],
+            "",
+            "every command, and any class, model or eigenvalue",
+            "find",
+        ),
+        (Views, vec![(Char('/'), Action::Find)], "", "list the models with a text in name or class", ""),
+        (Views, vec![(Char('P'), Action::Pin)], "", "put the settings aside as a pin", ""),
+        (Views, vec![(Char('Y'), Action::Sweep)], "", "sweep over the chosen parameter", ""),
         (Views, vec![(Char('?'), Action::Help), (F(1), Action::Help)], "", "this help", "help"),
         (Views, vec![(Char('q'), Action::Quit)], "", "quit", "quit"),
     ]
@@ -170,6 +180,19 @@ fn explaining() -> Vec<Row> {
         ),
         (In(View::Shape), vec![(Key::Home, Action::FirstLook)], "", "as seen at first", ""),
         step(View::Shape),
+        (
+            In(View::Shape),
+            vec![(Char('e'), Action::TurnFunction(1)), (Char('E'), Action::TurnFunction(-1))],
+            "",
+            "colour by the next eigenfunction, the one before",
+            "eigenfunction",
+        ),
+        (In(View::Shape), vec![(Char('w'), Action::NoFunction)], "", "without colour", ""),
+        method(View::Compare),
+        (In(View::Compare), vec![(Enter, Action::Recall)], "", "take the settings of the pin", "take"),
+        (In(View::Compare), vec![(Char('D'), Action::Unpin)], "", "remove the pin", "remove"),
+        (In(View::Compare), vec![(Char('f'), Action::ToggleSweep)], "", "the pins or the sweep", "sweep"),
+        (In(View::Compare), vec![(Char('g'), Action::ToggleAxis)], "", "the sweep's axis logarithmic or linear", ""),
         (In(View::Shape), vec![(Char('f'), Action::ToggleStyle)], "", "dots or blocks", "style"),
         (
             In(View::Neighbours),
@@ -182,14 +205,26 @@ fn explaining() -> Vec<Row> {
 }
 
 fn elsewhere() -> Vec<Row> {
-    use Context::{Always, Entry, Help};
+    use Context::{Always, Entry, Help, Palette};
     use Key::{Char, Ctrl, Down, End, Enter, Esc, F, Home, Left, PageDown, PageUp, Right, Up};
     vec![
-        (Entry, vec![(Enter, Action::Commit)], "", "take the value", "take it"),
-        (Entry, vec![(Esc, Action::Close)], "", "leave the value as it was", "leave it"),
+        (Entry, vec![(Enter, Action::Commit)], "", "take what was typed", "take it"),
+        (Entry, vec![(Esc, Action::Close)], "", "leave everything as it was", "leave it"),
         (Entry, vec![(Key::Backspace, Action::Erase)], "", "erase a character", ""),
         (Entry, vec![(Ctrl('u'), Action::EraseAll)], "", "erase everything before the caret", ""),
         (Entry, vec![(Left, Action::Left), (Right, Action::Right)], "← →", "move the caret", ""),
+        (Palette, vec![(Enter, Action::Pick)], "", "do it", "do it"),
+        (Palette, vec![(Esc, Action::Close), (Ctrl('p'), Action::Close)], "", "close the palette", "close"),
+        (
+            Palette,
+            vec![(Up, Action::Up), (Down, Action::Down), (PageUp, Action::PageUp), (PageDown, Action::PageDown)],
+            "",
+            "choose a line",
+            "choose",
+        ),
+        (Palette, vec![(Key::Backspace, Action::Erase)], "", "erase a character", ""),
+        (Palette, vec![(Ctrl('u'), Action::EraseAll)], "", "erase everything before the caret", ""),
+        (Palette, vec![(Left, Action::Left), (Right, Action::Right)], "← →", "move the caret", ""),
         (
             Help,
             vec![(Up, Action::Up), (Down, Action::Down), (PageUp, Action::PageUp), (PageDown, Action::PageDown)],
@@ -220,7 +255,7 @@ const fn choose(parameter: Parameter) -> Action {
 }
 
 fn numbers() -> Vec<(Key, Action)> {
-    ('1'..).zip(View::ALL).map(|(digit, view)| (Key::Char(digit), Action::Show(view))).collect()
+    ('1'..='9').chain(['0']).zip(View::ALL).map(|(digit, view)| (Key::Char(digit), Action::Show(view))).collect()
 }
 
 pub(super) fn names(keys: &[(Key, Action)]) -> String {

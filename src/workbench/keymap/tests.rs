@@ -5,7 +5,7 @@ use std::{collections::HashSet, mem};
 use super::*;
 use crate::{
     query::{Parameter, Settings},
-    workbench::{Entry, update},
+    workbench::{Entry, Palette, update},
 };
 
 fn state(view: View) -> State {
@@ -17,6 +17,7 @@ fn moods() -> Vec<State> {
     let mut moods: Vec<State> = View::ALL.into_iter().map(state).collect();
     moods.push(State { help: Some(0), ..state(View::Overview) });
     moods.push(State { entry: Some(Entry::default()), ..state(View::Overview) });
+    moods.push(State { palette: Some(Palette::default()), ..state(View::Overview) });
     moods
 }
 
@@ -104,6 +105,16 @@ fn every_action_of_a_key_is_bound() {
         Action::ToggleStyle,
         Action::ShowShape,
         Action::ToggleAlone,
+        Action::TurnFunction(1),
+        Action::NoFunction,
+        Action::Palette,
+        Action::Pick,
+        Action::Find,
+        Action::Pin,
+        Action::Unpin,
+        Action::Recall,
+        Action::Sweep,
+        Action::ToggleSweep,
         Action::Erase,
         Action::EraseAll,
         Action::Left,
@@ -160,7 +171,7 @@ fn hints_come_from_the_table() {
         hints(state).into_iter().map(|(keys, word)| format!("{keys} {word}")).collect::<Vec<_>>().join(" · ")
     };
     let overview = line(&state(View::Overview));
-    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–9 view · ? help · q quit");
-    assert_eq!(line(&moods()[9]), "↑↓ scroll · Esc close");
-    assert_eq!(line(&moods()[10]), "Enter take it · Esc leave it");
+    assert_eq!(overview, "g axis · ←→ turn · ↑↓ choose · Enter type · u undo · 1–0 view · : find · ? help · q quit");
+    assert_eq!(line(&moods()[10]), "↑↓ scroll · Esc close");
+    assert_eq!(line(&moods()[11]), "Enter take it · Esc leave it");
 }

@@ -63,6 +63,11 @@ impl Picture {
         for corners in &solid.triangles {
             picture.triangle(&mut depths, corners.map(|vertex| seen[vertex as usize]));
         }
+        if solid.triangles.is_empty() {
+            for corner in &seen {
+                picture.point(&mut depths, *corner);
+            }
+        }
         picture.scale_values();
         picture.lines(&depths);
         picture
@@ -101,6 +106,20 @@ impl Picture {
                     self.values[at] = mix(|corner| corner.value);
                 }
             }
+        }
+    }
+
+    /// A point of a cloud: nearer ones are lighter.
+    fn point(&mut self, depths: &mut [f32], point: Corner) {
+        let (column, row) = (point.x.floor(), point.y.floor());
+        if column < 0.0 || row < 0.0 || column >= self.width as f32 || row >= self.height as f32 {
+            return;
+        }
+        let at = row as usize * self.width + column as usize;
+        if point.depth > depths[at] {
+            depths[at] = point.depth;
+            self.shades[at] = (0.6 + 0.4 * point.depth).clamp(0.0, 1.0);
+            self.values[at] = point.value;
         }
     }
 
@@ -224,6 +243,13 @@ mod tests {
         let wide = (0..80).filter(|&column| picture.at(column, 20).is_some()).count();
         let high = (0..40).filter(|&row| picture.at(40, row).is_some()).count();
         assert!(wide.abs_diff(2 * high) <= 2, "{wide} {high}");
+    }
+
+    #[test]
+    fn a_cloud_is_drawn_point_by_point() {
+        let cloud = Mesh::new(vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0]], Vec::new());
+        let picture = Picture::paint(&Solid::new(&cloud), FRONT, (40, 40), 1.0, None);
+        assert_eq!(picture.shades.iter().filter(|shade| **shade >= 0.0).count(), 2);
     }
 
     #[test]
