@@ -20,7 +20,7 @@ use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
-    workbench::{Command, State, Update, shape::Style, worker::Worker},
+    workbench::{Command, State, Update, recipe::Loaded, shape::Style, worker::Worker},
 };
 
 mod caps;
@@ -81,6 +81,10 @@ pub struct Opening {
     pub settings: Settings,
     /// What the terminal can show; [`look`] finds out.
     pub look: Look,
+    /// The recipe to begin with; its parameters are `settings` already.
+    pub recipe: Option<Loaded>,
+    /// The last session of the data set, which is offered.
+    pub last: Option<Loaded>,
 }
 
 /// Opens the screen, and returns when the user leaves, a signal ends the session, or the terminal is gone.
@@ -102,6 +106,11 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     let mut screen = Screen::new(guard, opening.look).map_err(TerminalError::io("set up"))?;
     let input = Input::begin(queue).map_err(TerminalError::io("read"))?;
     let mut state = State::new(opening.title, opening.settings);
+    if let Some(recipe) = opening.recipe {
+        recipe.show(&mut state);
+    } else if let Some(last) = opening.last.filter(|last| last.differs(&state)) {
+        state.offer(last);
+    }
     if opening.look.ascii {
         state.style = Style::Plain;
     }

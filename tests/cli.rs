@@ -53,6 +53,34 @@ fn a_wrong_command_line_exits_with_2_and_says_what_is_wrong() {
 }
 
 #[test]
+fn a_recipe_of_the_screen_gives_the_same_report_bit_for_bit() {
+    use eigenselect::{
+        query::{Parameter, Settings},
+        workbench::{Action, State, recipe, update},
+    };
+    let room = Room::with_study();
+    let mut state = State::new("shapes", Settings { kmax: 30, ..Settings::default() });
+    for (parameter, value) in
+        [(Parameter::Normalisation, "area"), (Parameter::Distance, "l1"), (Parameter::Rounds, "7")]
+    {
+        update(&mut state, Action::Set(parameter, value.to_owned()));
+    }
+    fs::write(room.path("mine.toml"), recipe::write(&state).unwrap()).unwrap();
+    let report = ["report", "shapes", "--cache", "cache", "--format", "json"];
+    let by_recipe = tui(&room, &[&report[..], &["--recipe", "mine.toml"]].concat());
+    let set = ["--set", "kmax=30", "--set", "normalisation=area", "--set", "distance=l1", "--set", "T=7"];
+    let by_hand = tui(&room, &[&report[..], &set].concat());
+    assert_eq!((by_recipe.code, by_recipe.err.as_str()), (Some(0), ""));
+    assert_eq!(without_run(&by_recipe.out), without_run(&by_hand.out));
+    let further = tui(&room, &[&report[..], &["--recipe", "mine.toml", "--set", "T=8"]].concat());
+    assert_ne!(without_run(&further.out), without_run(&by_hand.out), "--set goes on from the recipe");
+    fs::write(room.path("bad.toml"), "version = 1\n[set]\nT = 0\n").unwrap();
+    let bad = tui(&room, &["report", "shapes", "--recipe", "bad.toml"]);
+    assert_eq!(bad.code, Some(1));
+    assert_eq!(bad.err, "tui: bad.toml: set.T: T takes a number from 1 to 1000, not \"0\"\n");
+}
+
+#[test]
 fn what_is_not_there_exits_with_1_and_one_line() {
     let room = Room::new();
     fs::create_dir(room.path("void")).unwrap();

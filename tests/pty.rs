@@ -357,7 +357,13 @@ impl Engine for Faulty {
 #[ignore = "is run by other tests"]
 fn faulty_program() {
     let fault = std::env::var("FAULT").unwrap();
-    let opening = Opening { title: "data".to_owned(), settings: Settings::default(), look: Look::default() };
+    let opening = Opening {
+        title: "data".to_owned(),
+        settings: Settings::default(),
+        look: Look::default(),
+        recipe: None,
+        last: None,
+    };
     let start = |notify| -> io::Result<Faulty> { Ok(Faulty { fault, notify: Some(notify).into() }) };
     let ending = terminal::run(opening, start).unwrap();
     println!("{:?}", ending.lines);

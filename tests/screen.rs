@@ -1,5 +1,7 @@
 //! The screen as literal text, at the sizes it is used at, and without a panic at all others.
 
+#![allow(clippy::unwrap_used)]
+
 #[path = "screen/replies.rs"]
 mod replies;
 #[path = "screen/sample.rs"]
@@ -13,7 +15,9 @@ use std::{
 use eigenselect::{
     query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
-    workbench::{Action, Figure, Filter, State, Trial, View, keymap, pins, shape::Style, update},
+    workbench::{
+        Action, Command, Effect, Figure, Filter, State, Trial, View, keymap, pins, recipe, shape::Style, update,
+    },
 };
 use ratatui::{
     Terminal,
@@ -202,6 +206,61 @@ fn the_palette_finds_commands_and_places() {
     compare("palette-typed", &drawn(&state, SMALL));
     update(&mut state, Action::Pick);
     assert_eq!((state.settings.class, state.view, state.palette), (14, View::Selection, None));
+}
+
+#[test]
+fn every_view_can_be_written_and_copied() {
+    for view in View::ALL {
+        let mut state = shown(sample::state(sample::full()), view);
+        update(&mut state, Action::Pin);
+        update(&mut state, Action::WriteView);
+        let name = format!("{}.csv", view.name().to_lowercase());
+        assert_eq!(state.entry.as_ref().unwrap().text(), name);
+        let effects = update(&mut state, Action::Commit);
+        let [Effect::Send(Command::Write { path, text, overwrite: false }), ..] = &effects[..] else {
+            panic!("{view:?}: {effects:?}")
+        };
+        assert_eq!(path.to_str().unwrap(), name);
+        let mut lines = text.lines();
+        let columns = lines.next().unwrap().split(',').count();
+        assert!(lines.next().unwrap().split(',').count() >= columns, "{view:?}");
+        let copied = update(&mut state, Action::Copy);
+        assert!(matches!(&copied[..], [Effect::Copy(text)] if text.lines().count() > 1), "{view:?}");
+    }
+    let empty = update(&mut shown(sample::state(Answer::default()), View::Curves), Action::Copy);
+    assert_eq!(empty, [], "there is nothing yet");
+}
+
+#[test]
+fn a_name_that_no_format_has_is_refused_where_it_is_typed() {
+    let mut state = shown(sample::state(sample::full()), View::Curves);
+    update(&mut state, Action::WriteView);
+    update(&mut state, Action::EraseAll);
+    "curves.xls".chars().for_each(|c| drop(update(&mut state, Action::Insert(c))));
+    assert_eq!(update(&mut state, Action::Commit), []);
+    let footer = drawn(&state, MEDIUM).lines().nth(38).unwrap().to_owned();
+    assert_eq!(footer, " write to curves.xls   × the name must end in .csv, .json or .txt, or in .toml for a recipe");
+    update(&mut state, Action::Close);
+    update(&mut state, Action::WriteRecipe);
+    let effects = update(&mut state, Action::Commit);
+    assert!(matches!(&effects[..], [Effect::Send(Command::Write { text, .. })] if text.contains("T = 20")));
+}
+
+#[test]
+fn the_last_session_is_offered_and_taken_up() {
+    let mut before = sample::state(sample::full());
+    update(&mut before, Action::Set(Parameter::Rounds, "40".to_owned()));
+    update(&mut before, Action::Show(View::Curves));
+    update(&mut before, Action::Pin);
+    let text = recipe::write(&before).unwrap();
+    let mut state = sample::state(sample::full());
+    state.offer(recipe::read(&text, &Settings::default(), 20).unwrap());
+    assert!(drawn(&state, SMALL).contains("L takes up the last session"));
+    let effects = update(&mut state, Action::Restore);
+    assert!(effects.contains(&Effect::Send(Command::Set(before.settings.clone()))));
+    assert_eq!((state.view, state.pins.len(), &state.settings), (View::Curves, 1, &before.settings));
+    update(&mut state, Action::Undo);
+    assert_eq!(state.settings, Settings::default());
 }
 
 #[test]

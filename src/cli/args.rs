@@ -85,6 +85,9 @@ pub(super) struct StudyArguments {
     /// Set a parameter, for instance kmax=100; repeatable ('tui report --help' lists them)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,
+    /// Begin with the parameters of a recipe, which the screen writes; --set goes on from there
+    #[arg(long, value_name = "F.toml")]
+    pub(super) recipe: Option<PathBuf>,
     /// Models solved at once [default: all processors]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(super) threads: Option<u16>,

@@ -13,7 +13,10 @@ use crate::{
     dataset::{self, DataSet},
     query::{Config, Parameter, Settings},
     store::{self, Store},
-    workbench::worker::Setup,
+    workbench::{
+        recipe::{self, Loaded},
+        worker::Setup,
+    },
 };
 
 /// What the engine needs to know, found to be in order.
@@ -22,6 +25,8 @@ pub(super) struct Study {
     options: dataset::Options,
     pub(super) data: DataSet,
     pub(super) settings: Settings,
+    /// The recipe to begin with.
+    pub(super) recipe: Option<Loaded>,
     pub(super) store: Store,
     pub(super) threads: usize,
 }
@@ -32,9 +37,13 @@ impl Study {
         check_folder(root)?;
         let options = dataset::Options { train: arguments.train.clone(), query: arguments.query.clone() };
         let data = dataset::open(root, &options).map_err(|error| Failure::Failed(chain(&error)))?;
-        let settings = settings(&arguments.set, &data)?;
+        let classes = data.classes.len();
+        let recipe = arguments.recipe.as_deref().map(|file| read_recipe(file, classes)).transpose()?;
+        let first = recipe.as_ref().map_or_else(Settings::default, |recipe| recipe.settings.clone());
+        let settings = settings(first, &arguments.set, &data)?;
         let store = open_store(&store::locate(root, arguments.cache.as_deref()));
-        Ok(Self { root: root.to_owned(), options, data, settings, store, threads: threads(arguments.threads) })
+        let threads = threads(arguments.threads);
+        Ok(Self { root: root.to_owned(), options, data, settings, recipe, store, threads })
     }
 
     /// For the engine without a screen.
@@ -82,9 +91,16 @@ pub(super) fn threads(asked: Option<u16>) -> usize {
     asked.map_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get), usize::from)
 }
 
-/// The default parameters with those that were set. A class can be given by its name.
-fn settings(set: &[Setting], data: &DataSet) -> Result<Settings, Failure> {
-    let mut settings = Settings::default();
+/// Reads a recipe.
+fn read_recipe(file: &Path, classes: usize) -> Result<Loaded, Failure> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::caused(format!("{}: cannot be read", file.display()), error))?;
+    let read = recipe::read(&text, &Settings::default(), classes);
+    read.map_err(|error| Failure::Failed(format!("{}: {error}", file.display())))
+}
+
+/// The parameters to begin with, with those that were set. A class can be given by its name.
+fn settings(mut settings: Settings, set: &[Setting], data: &DataSet) -> Result<Settings, Failure> {
     for Setting { parameter, value } in set {
         let named = (*parameter == Parameter::Class).then(|| data.classes.iter().position(|class| class == value));
         let value = named.flatten().map_or_else(|| value.clone(), |at| (at + 1).to_string());

@@ -39,6 +39,8 @@ pub struct Ending {
     pub exit: Exit,
     /// Lines for standard error, now that the screen no longer covers it: why the engine ended, and panics.
     pub lines: Vec<String>,
+    /// The session as a recipe, to be taken up the next time.
+    pub session: Option<String>,
 }
 
 #[cfg(test)]

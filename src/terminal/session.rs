@@ -10,7 +10,7 @@ use std::{
 use signal_hook::consts::SIGINT;
 
 use super::{Ending, Engine, Exit, events::Event, screen::Surface};
-use crate::workbench::{Action, Effect, Leave, State, Update, keymap, update};
+use crate::workbench::{Action, Effect, Leave, State, Update, keymap, recipe, update};
 
 /// So many events happen before a frame at most: a flood must not keep the screen from being drawn.
 const BATCH: usize = 256;
@@ -149,6 +149,10 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Trial(trial));
             }
+            Event::Update(Update::Written(path, outcome)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Written(path, outcome));
+            }
             Event::Update(Update::Rescanned) => self.apply(Action::Rescanned),
             Event::Update(Update::Picture(scene, picture)) => {
                 self.due.sooner(Due::Now);
@@ -178,6 +182,7 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 Effect::Leave(Leave::Quit) => return Ok(Some(Exit::Quit)),
                 Effect::Leave(Leave::Interrupt) => return Ok(Some(Exit::Interrupted)),
                 Effect::Redraw => self.surface.forget()?,
+                Effect::Copy(text) => self.surface.copy(&text)?,
                 Effect::Suspend => {
                     self.surface.suspend()?;
                     // After this we have been stopped and continued, or nobody is there to stop us.
@@ -213,7 +218,8 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
     }
 
     fn ending(&self, exit: Exit) -> Ending {
-        Ending { exit, lines: self.state.fatal.iter().cloned().collect() }
+        let session = recipe::write(&self.state).ok();
+        Ending { exit, lines: self.state.fatal.iter().cloned().collect(), session }
     }
 }
 

@@ -92,6 +92,7 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
     let (name, sign) = match state.purpose {
         Purpose::Value => (state.parameter.name(), " = "),
         Purpose::Needle => ("models with", " "),
+        Purpose::File => ("write to", " "),
     };
     let x = pane.spans(1, 0, [(name, Role::Strong), (sign, Role::Strong), (before.as_str(), Role::Plain)]);
     let mut after = after.chars();
@@ -101,6 +102,7 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
     let (says, role) = match &entry.error {
         Some(error) => (format!("× {error}"), Role::Bad),
         None if state.purpose == Purpose::Needle => (String::new(), Role::Faint),
+        None if state.purpose == Purpose::File => (".csv .json .txt, or .toml for a recipe".to_owned(), Role::Faint),
         None => (range(state), Role::Faint),
     };
     let room = (pane.width() as usize).saturating_sub(x as usize + 3);

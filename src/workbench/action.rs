@@ -1,6 +1,6 @@
 //! Everything that can happen to the state, and everything the state can ask for.
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use super::{
     Command, Trial, View,
@@ -123,6 +123,14 @@ pub enum Action {
     Unpin,
     /// Take the settings of the pin that the cursor is on.
     Recall,
+    /// Type the name of a file for what the view shows.
+    WriteView,
+    /// Type the name of a file for the session.
+    WriteRecipe,
+    /// Give what the view shows to the terminal to copy.
+    Copy,
+    /// Take up the last session.
+    Restore,
     /// Sweep over the chosen parameter.
     Sweep,
     /// Show the sweep instead of the pins, or no longer.
@@ -151,6 +159,8 @@ pub enum Action {
     Rescanned,
     /// Figures under other parameters.
     Trial(Arc<Trial>),
+    /// A file was written, or why not.
+    Written(PathBuf, Result<(), String>),
     /// A scene that was painted.
     Picture(Scene, Arc<Picture>),
     /// The engine cannot go on.
@@ -170,6 +180,8 @@ pub enum Effect {
     Suspend,
     /// Draw everything anew, whatever the terminal shows.
     Redraw,
+    /// Give a text to the terminal to copy.
+    Copy(String),
 }
 
 /// How a session ends at the user's wish.

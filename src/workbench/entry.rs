@@ -1,7 +1,7 @@
-//! A line of text being typed: the value of a parameter.
+//! A line of text being typed: the value of a parameter, a name, a search.
 
 /// The longest text that is taken.
-const LONGEST: usize = 40;
+const LONGEST: usize = 200;
 
 /// Text with a caret, and what is wrong with it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -13,6 +13,14 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// An entry that holds a text already, the caret at its end.
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        let mut entry = Self::default();
+        text.chars().for_each(|character| entry.insert(character));
+        entry
+    }
+
     /// The text.
     #[must_use]
     pub fn text(&self) -> String {

@@ -1,6 +1,6 @@
 //! What goes between the screen and the engine.
 
-use std::sync::Arc;
+use std::{path::PathBuf, sync::Arc};
 
 use super::{
     Trial,
@@ -21,6 +21,15 @@ pub enum Command {
     Try(Vec<Settings>),
     /// Paint these scenes; they replace those before.
     Paint(Vec<Scene>),
+    /// Write a file.
+    Write {
+        /// Where; a relative path is below the folder that the program was started in.
+        path: PathBuf,
+        /// What.
+        text: String,
+        /// Whether a file that is there may be replaced.
+        overwrite: bool,
+    },
     /// Look at the files again.
     Rescan,
     /// Stop solving spectra; what is there stays.
@@ -42,6 +51,8 @@ pub enum Update {
     Rescanned,
     /// Figures under other parameters.
     Trial(Arc<Trial>),
+    /// A file was written, or why not.
+    Written(PathBuf, Result<(), String>),
     /// A scene that was painted.
     Picture(Scene, Arc<Picture>),
     /// The engine cannot go on, and why.

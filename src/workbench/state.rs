@@ -4,6 +4,7 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
     Entry, History, ModelList, Palette, Pin, Replies, Sweep, Why, parameters,
+    recipe::Loaded,
     shape::{Camera, Pictures, Scene, Style},
 };
 use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
@@ -110,6 +111,8 @@ pub enum Purpose {
     Value,
     /// What the models listed have in their name or class.
     Needle,
+    /// The name of a file to write.
+    File,
 }
 
 /// A line for the user, shown until the next key, or only until the next answer.
@@ -174,6 +177,10 @@ pub struct State {
     pub pin: usize,
     /// A sweep over one parameter.
     pub sweep: Option<Sweep>,
+    /// Files that this session wrote.
+    pub written: BTreeSet<String>,
+    /// The last session of the data set, until it is taken up.
+    pub last: Option<Loaded>,
     /// The settings that are being tried for pins and sweep.
     pub tried: Vec<Settings>,
     /// Where shapes are seen from.
@@ -227,6 +234,8 @@ impl State {
             pins: Vec::new(),
             pin: 0,
             sweep: None,
+            written: BTreeSet::new(),
+            last: None,
             tried: Vec::new(),
             camera: Camera::default(),
             style: Style::default(),
@@ -239,6 +248,13 @@ impl State {
             fatal: None,
             size: (80, 24),
         }
+    }
+
+    /// Offers to take up the last session.
+    pub fn offer(&mut self, last: Loaded) {
+        self.last = Some(last);
+        let text = "L takes up the last session of this data set".to_owned();
+        self.notice = Some(Notice { text, bad: false, brief: false });
     }
 
     /// True while the value that a stage makes belongs to other parameters than those on the screen.

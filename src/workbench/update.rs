@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore, palette,
-    parameters, pins,
+    Action, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore, leave,
+    palette, parameters, pins,
 };
 use crate::query::{Answer, Parameter, Settings};
 
@@ -48,6 +48,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             | Action::Picture(..)
             | Action::Rescanned
             | Action::Trial(_)
+            | Action::Written(..)
             | Action::Resize(..)
             | Action::Report(_)
             | Action::Fatal(_)
@@ -82,6 +83,14 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             pins::complete(state);
         }
         Action::Trial(trial) => pins::take(state, &trial),
+        Action::Written(path, outcome) => leave::told(state, &path, outcome),
+        Action::WriteView => {
+            let proposed = leave::proposed(state);
+            leave::name(state, &proposed);
+        }
+        Action::WriteRecipe => leave::name(state, "eigenselect.toml"),
+        Action::Copy => return leave::copy(state),
+        Action::Restore => return leave::restore(state),
         Action::Palette => state.palette = Some(Palette::default()),
         Action::Pick => return pick(state),
         Action::Set(parameter, value) => return set(state, parameter, &value),
@@ -258,7 +267,7 @@ fn reset(state: &mut State) -> Vec<Effect> {
 }
 
 /// Takes new settings as the ones on the screen, and asks the engine for them.
-fn adopt(state: &mut State, next: Settings, turned: Option<Parameter>) -> Vec<Effect> {
+pub(super) fn adopt(state: &mut State, next: Settings, turned: Option<Parameter>) -> Vec<Effect> {
     if next == state.settings {
         return Vec::new();
     }
@@ -323,9 +332,13 @@ fn typed(state: &mut State, action: &Action) {
 fn commit(state: &mut State) -> Vec<Effect> {
     let Some(entry) = &mut state.entry else { return Vec::new() };
     let text = entry.text();
-    if state.purpose == Purpose::Needle {
-        state.entry = None;
-        return Vec::new();
+    match state.purpose {
+        Purpose::Needle => {
+            state.entry = None;
+            return Vec::new();
+        }
+        Purpose::File if !text.trim().is_empty() => return leave::write(state, text.trim()),
+        Purpose::File | Purpose::Value => {}
     }
     if text.trim().is_empty() {
         state.entry = None;

@@ -4,6 +4,7 @@
 //! the study is made again and again on the models that are there.
 
 use std::{
+    io::Write as _,
     panic::{AssertUnwindSafe, catch_unwind},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError, mpsc},
@@ -55,6 +56,8 @@ enum Message {
     Surface(Reply),
     /// Figures under other parameters.
     Trial(Trial),
+    /// A file was written, or why not.
+    Written(PathBuf, Result<(), String>),
 }
 
 /// The worker. Dropping it asks the thread to end and does not wait for a long computation.
@@ -206,6 +209,8 @@ impl<'a> Desk<'a> {
                     Message::Command(Command::Set(settings)) => newest = Some(settings),
                     Message::Command(Command::Ask(questions)) => asked = Some(questions),
                     Message::Command(Command::Look(questions)) => self.look(questions),
+                    Message::Command(Command::Write { path, text, overwrite }) => self.write(path, text, overwrite),
+                    Message::Written(path, outcome) => (self.notify)(Update::Written(path, outcome)),
                     Message::Command(Command::Try(settings)) => self.try_out(settings),
                     Message::Trial(trial) => (self.notify)(Update::Trial(Arc::new(trial))),
                     Message::Command(Command::Quit) => {
@@ -268,6 +273,7 @@ impl<'a> Desk<'a> {
             | Command::Ask(_)
             | Command::Look(_)
             | Command::Try(_)
+            | Command::Write { .. }
             | Command::Paint(_)
             | Command::Quit => {}
         }
@@ -352,6 +358,29 @@ impl<'a> Desk<'a> {
             for looking in looking {
                 let _ = outbox.send(Message::Surface(looking.answer()));
             }
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Writes a file on a thread of its own: the disk may be a slow one.
+    fn write(&mut self, path: PathBuf, text: String, overwrite: bool) {
+        let outbox = self.outbox.clone();
+        let begun = std::thread::Builder::new().name("writer".into()).spawn(move || {
+            let mut options = std::fs::OpenOptions::new();
+            options.write(true);
+            if overwrite {
+                options.create(true).truncate(true)
+            } else {
+                options.create_new(true)
+            };
+            let written = options.open(&path).and_then(|mut file| file.write_all(text.as_bytes()));
+            let outcome = written.map_err(|error| match error.kind() {
+                std::io::ErrorKind::AlreadyExists => "there is such a file already; choose another name".to_owned(),
+                _ => format!("cannot be written: {error}"),
+            });
+            let _ = outbox.send(Message::Written(path, outcome));
         });
         if let Err(error) = begun {
             self.host.warn(&format!("the system has no thread to give: {error}"));

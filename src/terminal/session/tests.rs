@@ -19,6 +19,7 @@ struct Paper {
     drawn: Vec<State>,
     forgotten: usize,
     suspended: usize,
+    copied: Vec<String>,
     resumed: usize,
     torn: bool,
 }
@@ -35,6 +36,11 @@ impl Surface for Paper {
 
     fn forget(&mut self) -> io::Result<()> {
         self.forgotten += 1;
+        Ok(())
+    }
+
+    fn copy(&mut self, text: &str) -> io::Result<()> {
+        self.copied.push(text.to_owned());
         Ok(())
     }
 
@@ -95,7 +101,8 @@ fn ways_to_end() {
     assert_eq!(played([Event::Signal(SIGINT)]).0.exit, Exit::Interrupted);
     assert_eq!(played([Event::Closed]).0.exit, Exit::Gone);
     let (ending, ..) = played([Event::Update(Update::Fatal("no such folder".to_owned()))]);
-    assert_eq!(ending, Ending { exit: Exit::Failed, lines: vec!["no such folder".to_owned()] });
+    assert_eq!((ending.exit, ending.lines), (Exit::Failed, vec!["no such folder".to_owned()]));
+    assert!(ending.session.is_some_and(|session| session.contains("version = 1")));
 }
 
 #[test]
