@@ -6,6 +6,7 @@ use super::{
     lanes::{Kernel, Lanes, Row, WIDTH},
     pencil::Product,
 };
+use crate::laplacian::{MassMatrix, Symmetric};
 
 /// Eight by eight numbers, by rows.
 pub(super) type Square = [Row; WIDTH];
@@ -141,6 +142,98 @@ impl Kernel for Combine<'_> {
                 sum = lanes.add_mul(sum, lanes.splat(value), factor);
             }
             *to = lanes.row(sum);
+        }
+    }
+}
+
+/// `first = second = x M` with an eight by eight M.
+pub(super) struct CombineTwice<'a> {
+    pub x: &'a [Row],
+    pub factor: &'a Square,
+    pub first: &'a mut [Row],
+    pub second: &'a mut [Row],
+}
+
+impl Kernel for CombineTwice<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { x, factor, first, second } = self;
+        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+        for ((first, second), row) in first.iter_mut().zip(second).zip(x) {
+            let mut sum = lanes.zero();
+            for (&factor, &value) in factor.iter().zip(row) {
+                sum = lanes.add_mul(sum, lanes.splat(value), factor);
+            }
+            *first = lanes.row(sum);
+            *second = *first;
+        }
+    }
+}
+
+/// `w −= past M`; returns `newestᵀ w`.
+pub(super) struct Recur<'a> {
+    pub past: &'a [Row],
+    pub factor: &'a Square,
+    pub newest: &'a [Row],
+    pub w: &'a mut [Row],
+}
+
+impl Kernel for Recur<'_> {
+    type Output = Square;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> Square {
+        let Self { past, factor, newest, w } = self;
+        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+        let mut sums = [lanes.zero(); WIDTH];
+        for ((w, past), newest) in w.iter_mut().zip(past).zip(newest) {
+            let mut sum = lanes.load(w);
+            for (&factor, &value) in factor.iter().zip(past) {
+                sum = lanes.sub_mul(sum, lanes.splat(value), factor);
+            }
+            *w = lanes.row(sum);
+            for (sums, &value) in sums.iter_mut().zip(newest) {
+                *sums = lanes.add_mul(*sums, lanes.splat(value), sum);
+            }
+        }
+        sums.map(|sum| lanes.row(sum))
+    }
+}
+
+/// `r −= (L − σB) x`
+pub(super) struct Residual<'a> {
+    pub matrix: &'a Symmetric,
+    pub sigma: f64,
+    pub x: &'a [Row],
+    pub r: &'a mut [Row],
+}
+
+impl Kernel for Residual<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { matrix, sigma, x, r } = self;
+        for (column, own) in x.iter().enumerate() {
+            let own = lanes.load(own);
+            let mut sum = lanes.load(&r[column]);
+            for at in matrix.range(column) {
+                let row = matrix.rows[at] as usize;
+                let mass = match &matrix.mass {
+                    MassMatrix::Full(values) => values[at],
+                    MassMatrix::Diagonal(values) if row == column => values[row],
+                    MassMatrix::Unit if row == column => 1.0,
+                    _ => 0.0,
+                };
+                let value = lanes.splat(matrix.stiffness[at] - sigma * mass);
+                sum = lanes.sub_mul(sum, value, lanes.load(&x[row]));
+                if row != column {
+                    r[row] = lanes.row(lanes.sub_mul(lanes.load(&r[row]), value, own));
+                }
+            }
+            r[column] = lanes.row(sum);
         }
     }
 }

@@ -24,7 +24,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
         let (_, _, stiffness, mass) = matrix.entries().next()?;
         let value = if kernel { 0.0 } else { stiffness / mass };
         let error = 2.0 * f64::EPSILON * value;
-        return value.is_finite().then(|| vec![Found { value, near: error, error }]);
+        return value.is_finite().then(|| vec![Found::exactly(value, error)]);
     }
     let (l, b) = full(matrix);
     let tau = 4.0 * std::f64::consts::PI / matrix.total_mass();
@@ -43,7 +43,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
             let shifted = inverse.min(largest) + tau;
             let (first, second) = (unit * shifted * shifted / tau, unit * largest);
             let (value, error) = if first <= second { (inverse, first) } else { (direct, second) };
-            Found { value, near: error, error }
+            Found::exactly(value, error)
         })
         .collect();
     found.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -51,7 +51,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
         if found[0].value.abs() > 1e-7 * tau {
             return None;
         }
-        found[0] = Found { value: 0.0, near: 0.0, error: 0.0 };
+        found[0] = Found::exactly(0.0, 0.0);
     }
     if found[usize::from(kernel)].value <= 0.0 {
         return None;

@@ -4,16 +4,19 @@
 //! nearest to σ on both sides come first. The basis is kept B-orthogonal in full, block against all earlier blocks,
 //! because what is lost there comes back as copies of eigenvalues (Grimes, Lewis and Simon 1994, § 4).
 
+use self::projected::{cholesky, product, projected};
 use super::{
-    block::{Combine, Dots, Multiply, Square, Update},
+    block::{Combine, CombineTwice, Dots, Multiply, Recur, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
     panel::{Panel, PanelDots, PanelUpdate, Round, panels},
-    pencil::Pencil,
+    pencil::{Pencil, Product},
     poll::{Poll, Stop},
     small::{eigen, identity},
     timings::Cost,
 };
+
+mod projected;
 
 /// Inverse iterations on the start block. They take out of it what lies far from the shift at the price of a solve
 /// each, where a Lanczos step costs a block of the basis as well.
@@ -27,8 +30,9 @@ const ROUGHLY: f64 = 1e-9;
 /// Memory that one run leaves to the next.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// The basis in single precision.
+    /// The basis in single precision, and B times it, unless B is the identity.
     blocks: Vec<Vec<Panel>>,
+    images: Vec<Vec<Panel>>,
     /// The basis in double precision, where eigenvectors are wanted of it.
     exact: Vec<Buffer>,
     /// The newest block of the basis and the one before it.
@@ -38,12 +42,15 @@ pub(super) struct Scratch {
     work: Buffer,
     /// B times that.
     mass: Buffer,
+    /// The block after the newest.
+    next: Buffer,
     /// B V of the newest block.
     newest: Buffer,
     small: Vec<f64>,
     tails: Vec<Row>,
     room: Vec<Row>,
-    sums: Vec<Square>,
+    #[cfg(test)]
+    pub tamper: super::faults::Tamper,
 }
 
 /// An approximate eigenvalue.
@@ -86,6 +93,12 @@ pub(super) struct Krylov<'a> {
     alpha: Vec<Square>,
     /// Blocks below the diagonal: `beta[j]` couples block j to block j + 1.
     beta: Vec<Square>,
+    /// For each step what orthogonalisation took out of the product: its components along the blocks.
+    lost: Vec<Vec<Square>>,
+    /// For each vector of the first block by how much the solve was wrong: see [`accuracy`](Self::accuracy).
+    wrong: [f64; WIDTH],
+    /// Whether the products with S were those with a symmetric operator, as they are unless something is wrong.
+    symmetric: bool,
     random: Random,
 }
 
@@ -104,13 +117,25 @@ impl<'a> Krylov<'a> {
         poll: &mut Poll,
     ) -> Result<Self, Stop> {
         let len = pencil.order() * WIDTH;
-        let Scratch { now, past, work, mass, newest, .. } = &mut *scratch;
-        for buffer in [now, past, work, mass, newest] {
+        let Scratch { now, past, next, work, mass, newest, .. } = &mut *scratch;
+        for buffer in [now, past, next, work, mass, newest] {
             buffer.reserve(len);
         }
         let mut random = Random(seed);
         scratch.work.flat().fill_with(|| random.next());
-        let mut this = Self { pencil, factor, sigma, scratch, purpose, alpha: Vec::new(), beta: Vec::new(), random };
+        let mut this = Self {
+            pencil,
+            factor,
+            sigma,
+            scratch,
+            purpose,
+            alpha: Vec::new(),
+            beta: Vec::new(),
+            lost: Vec::new(),
+            wrong: [0.0; WIDTH],
+            symmetric: true,
+            random,
+        };
         for _ in 0..WARMING {
             this.normalise(0, ROUGHLY, poll)?;
             this.apply(poll)?;
@@ -132,99 +157,137 @@ impl<'a> Krylov<'a> {
     pub(super) fn step(&mut self, poll: &mut Poll) -> Result<(), Stop> {
         let blocks = self.blocks();
         self.apply(poll)?;
+        if blocks == 1 {
+            self.measure();
+            poll.charge(Cost::Solves);
+        }
         self.recur();
         poll.charge(Cost::Orthogonalisation);
-        self.orthogonalise(blocks, poll)?;
+        let lost = self.orthogonalise(blocks, poll)?;
+        self.lost.push(lost);
         let beta = self.normalise(blocks, STRICTLY, poll)?;
         self.beta.push(beta);
         self.keep();
         Ok(())
     }
 
-    /// `work = A⁻¹ newest`.
+    /// `work = A⁻¹ newest`, where `work` holds a copy of `newest`.
     fn apply(&mut self, poll: &mut Poll) -> Result<(), Stop> {
-        self.scratch.work.flat().copy_from_slice(self.scratch.newest.flat());
-        poll.charge(Cost::Rest);
-        self.factor.solve(&self.pencil.symbolic, self.scratch.work.rows_mut(), poll)
+        self.factor.solve(&self.pencil.symbolic, self.scratch.work.rows_mut(), poll)?;
+        #[cfg(test)]
+        self.scratch.tamper.solution(self.scratch.work.rows_mut());
+        Ok(())
+    }
+
+    /// Lets a test take out, repeat or move what was found.
+    #[cfg(test)]
+    pub(super) fn tamper(&mut self, sides: &mut super::slice::Sides) {
+        self.scratch.tamper.sides(sides);
+    }
+
+    /// Looks how well `work` solves (L − σB) work = newest.
+    fn measure(&mut self) {
+        let Scratch { now, work, mass, newest, .. } = &mut *self.scratch;
+        mass.flat().copy_from_slice(newest.flat());
+        let r = mass.rows_mut();
+        dispatch(Residual { matrix: &self.pencil.matrix, sigma: self.sigma, x: work.rows(), r });
+        let mut sum = [Square::default()];
+        dispatch(Dots { basis: &[now.rows()], t: mass.rows(), sums: &mut sum });
+        self.wrong = std::array::from_fn(|j| sum[0].iter().fold(0.0, |most, row| row[j].abs().max(most)));
+    }
+
+    /// By how much the errors of the factorisation and the solves shift eigenvalues, from the first block.
+    ///
+    /// The solution w = S v of a solve has the residual r = Bv − (L − σB) w = E w, where E is what the solve was for
+    /// in excess of L − σB, and shifts the eigenvalue of x by xᵀEx. Of this the products vᵀr of the first block with
+    /// the residuals of the first block, divided by the norms of w, are samples; the largest one is returned.
+    pub(super) fn accuracy(&self) -> f64 {
+        let (Some(alpha), Some(beta)) = (self.alpha.first(), self.beta.first()) else { return 0.0 };
+        let norm = |j: usize| alpha.iter().chain(beta).map(|row| row[j] * row[j]).sum::<f64>().sqrt();
+        self.wrong.iter().enumerate().fold(0.0, |most, (j, wrong)| (wrong / norm(j)).max(most))
     }
 
     /// The three-term recurrence: takes out of `work` its large components, those along the last two blocks. Only
     /// then is one pass of orthogonalisation enough: it multiplies what orthogonality the basis lacks with what it
     /// removes.
     fn recur(&mut self) {
-        let at = self.alpha.len();
         let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
-        if let Some(before) = at.checked_sub(1) {
-            let beta = &self.beta[before];
-            let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
-            dispatch(Update { basis: &[past.rows()], factors: &[factor], w: work.rows_mut() });
-        }
         let mut sum = [Square::default()];
-        dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut sum });
+        if let Some(beta) = self.beta.last() {
+            let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
+            let (past, newest, w) = (past.rows(), newest.rows(), work.rows_mut());
+            sum[0] = dispatch(Recur { past, factor: &factor, newest, w });
+        } else {
+            dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut sum });
+        }
         let [sum] = sum;
         let alpha: Square = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (sum[i][j] + sum[j][i])));
+        let coupled = alpha.iter().chain(self.beta.last().into_iter().flatten()).flatten();
+        let largest = coupled.fold(0.0_f64, |most, entry| most.max(entry.abs()));
+        let skew = (0..WIDTH).flat_map(|i| (0..i).map(move |j| (i, j)));
+        let skew = skew.fold(0.0_f64, |most, (i, j)| most.max((sum[i][j] - sum[j][i]).abs()));
+        // False for NaN too.
+        self.symmetric &= skew <= 1e-5 * largest;
         dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
         self.alpha.push(alpha);
     }
 
-    /// Makes `work` B-orthogonal to the locked vectors and to so many blocks.
-    fn orthogonalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<(), Stop> {
-        let Scratch { blocks: basis, exact, now, past, work, mass, room, sums: single, .. } = &mut *self.scratch;
-        if self.purpose.locked().is_empty() && blocks == 0 {
-            return Ok(());
-        }
-        let double = matches!(self.purpose, Purpose::Vectors(_));
-        let recent = if double { &exact[..blocks] } else { &[] };
-        let last = if double { 0 } else { blocks };
-        let all: Vec<&[Row]> = self
-            .purpose
-            .locked()
-            .iter()
-            .chain(recent)
-            .chain([&*now, &*past].into_iter().take(last))
-            .map(Buffer::rows)
-            .collect();
-        dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
-        poll.charge(Cost::Products);
-        let mut sums = vec![Square::default(); all.len()];
-        dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
-        poll.spend(work.rows().len() * all.len() * WIDTH)?;
-        dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
-        poll.spend(work.rows().len() * all.len() * WIDTH)?;
-        if !double {
-            let basis: Vec<&[Panel]> = basis[..blocks.saturating_sub(2)].iter().map(Vec::as_slice).collect();
-            dispatch(PanelDots { basis: &basis, t: mass.rows(), room, sums: single });
-            poll.spend(work.rows().len() * basis.len() * WIDTH / 2)?;
-            let factors: Vec<_> = single.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect();
-            dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut() });
-            poll.spend(work.rows().len() * basis.len() * WIDTH / 2)?;
+    /// Makes `work` B-orthogonal to the first so many blocks and to the locked vectors, and returns its components
+    /// along the blocks.
+    fn orthogonalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
+        let Scratch { blocks: basis, images, exact, work, mass, room, .. } = &mut *self.scratch;
+        let mut sums = Vec::new();
+        match self.purpose {
+            Purpose::Values => {
+                let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
+                let images: Vec<&[Panel]> = images.iter().take(blocks).map(Vec::as_slice).collect();
+                let dual = if matches!(self.pencil.mass, Product::Unit) { &basis } else { &images };
+                dispatch(PanelDots { basis: dual, t: work.rows(), room, sums: &mut sums });
+                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
+                let single: Vec<_> = sums.iter().map(|sum| sum.map(|row| row.map(|value| value as f32))).collect();
+                dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut() });
+                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
+            }
+            Purpose::Vectors(locked) => {
+                let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
+                dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+                poll.charge(Cost::Products);
+                sums.resize(all.len(), Square::default());
+                dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
+                poll.spend(work.rows().len() * all.len() * WIDTH)?;
+                dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
+                poll.spend(work.rows().len() * all.len() * WIDTH)?;
+                sums.truncate(blocks);
+            }
         }
         poll.charge(Cost::Orthogonalisation);
-        Ok(())
+        Ok(sums)
     }
 
-    /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix; Q in `work`, `BQ` in `newest`.
-    /// Columns that depend on the others are replaced by random ones, with zeros in R.
+    /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix; Q in `next`, `BQ` in `newest` and
+    /// in `work`, where it is to be multiplied next. Columns that depend on the others are replaced by random ones,
+    /// with zeros in R.
     fn normalise(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<Square, Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
         if blocks == 0 && !self.purpose.locked().is_empty() {
             self.orthogonalise(0, poll)?;
         }
         for _ in 0..6 {
-            let Scratch { work, mass, newest, .. } = &mut *self.scratch;
+            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
             let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
             poll.charge(Cost::Products);
             let (upper, inverse, worst, lost) = cholesky(&gram);
-            dispatch(Combine { x: work.rows(), factor: &inverse, to: newest.rows_mut() });
-            std::mem::swap(work, newest);
-            dispatch(Combine { x: mass.rows(), factor: &inverse, to: newest.rows_mut() });
+            dispatch(Combine { x: work.rows(), factor: &inverse, to: next.rows_mut() });
+            let (first, second) = (newest.rows_mut(), work.rows_mut());
+            dispatch(CombineTwice { x: mass.rows(), factor: &inverse, first, second });
             poll.charge(Cost::Blocks);
-            poll.spend(4 * WIDTH * work.rows().len())?;
+            poll.spend(4 * WIDTH * next.rows().len())?;
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);
             if lost == 0 && worst > share {
-                return Ok(total);
+                break;
             }
+            std::mem::swap(next, work);
             // Cholesky's Q is off by rounding over `worst`: it takes a second round, but Q still has the basis's
             // complement to nearly all digits.
             if lost == 0 && worst > 1e-6 {
@@ -243,36 +306,46 @@ impl<'a> Krylov<'a> {
         Ok(total)
     }
 
-    /// Takes `work` as the next block of the basis.
+    /// Takes `next` as the next block of the basis.
     fn keep(&mut self) {
         let at = self.beta.len();
-        let Scratch { blocks, exact, now, past, work, .. } = &mut *self.scratch;
+        let Scratch { blocks, images, exact, now, past, next, newest, .. } = &mut *self.scratch;
+        let round = |list: &mut Vec<Vec<Panel>>, x: &[Row]| {
+            if list.len() == at {
+                list.push(Vec::new());
+            }
+            list[at].resize(panels(x.len()), Panel::default());
+            dispatch(Round { x, to: &mut list[at] });
+        };
         match self.purpose {
             Purpose::Values => {
-                if blocks.len() == at {
-                    blocks.push(Vec::new());
+                round(blocks, next.rows());
+                if !matches!(self.pencil.mass, Product::Unit) {
+                    round(images, newest.rows());
                 }
-                blocks[at].resize(panels(work.rows().len()), Panel::default());
-                dispatch(Round { x: work.rows(), to: &mut blocks[at] });
             }
             Purpose::Vectors(_) => {
                 if exact.len() == at {
                     exact.push(Buffer::default());
                 }
                 exact[at].reserve(self.pencil.order() * WIDTH);
-                exact[at].rows_mut().copy_from_slice(work.rows());
+                exact[at].rows_mut().copy_from_slice(next.rows());
             }
         }
         std::mem::swap(past, now);
-        std::mem::swap(now, work);
+        std::mem::swap(now, next);
     }
 
-    /// The Ritz values of the basis without its last block, by distance from the shift.
+    /// The Ritz values of the basis without its last block, by distance from the shift. None when the products with
+    /// the operator cannot have been right.
     pub(super) fn ritz(&mut self, poll: &mut Poll) -> Option<Vec<Ritz>> {
+        if !self.symmetric {
+            return None;
+        }
         let blocks = self.alpha.len();
         let n = blocks * WIDTH;
         let Scratch { small, tails, .. } = &mut *self.scratch;
-        projected(&self.alpha, &self.beta, small);
+        projected(&self.alpha, &self.beta, &self.lost, small);
         tails.clear();
         tails.resize(n, [0.0; WIDTH]);
         for at in 0..WIDTH {
@@ -302,11 +375,17 @@ impl Krylov<'_> {
     pub(super) fn vectors(&mut self, wanted: &[Ritz]) -> Option<Vec<Buffer>> {
         let blocks = self.alpha.len();
         let n = blocks * WIDTH;
-        projected(&self.alpha, &self.beta, &mut self.scratch.small);
+        projected(&self.alpha, &self.beta, &self.lost, &mut self.scratch.small);
         let mut all = identity(n);
         let theta = eigen(&mut self.scratch.small, n, &mut all)?;
-        let columns: Vec<usize> =
-            wanted.iter().filter_map(|ritz| theta.iter().position(|theta| *theta == ritz.theta)).collect();
+        // Equal values belong to different columns.
+        let mut columns: Vec<usize> = Vec::with_capacity(wanted.len());
+        for ritz in wanted {
+            let new = |at: &usize| theta[*at] == ritz.theta && !columns.contains(at);
+            if let Some(at) = (0..n).find(new) {
+                columns.push(at);
+            }
+        }
         let basis: Vec<&[Row]> = self.scratch.exact[..blocks].iter().map(Buffer::rows).collect();
         let made = columns.chunks(WIDTH).map(|columns| {
             let mut factors = vec![Square::default(); blocks];
@@ -325,69 +404,6 @@ impl Krylov<'_> {
         });
         Some(made.collect())
     }
-}
-
-/// The projected operator as a full matrix.
-pub(super) fn projected(alpha: &[Square], beta: &[Square], to: &mut Vec<f64>) {
-    let n = alpha.len() * WIDTH;
-    to.clear();
-    to.resize(n * n, 0.0);
-    for (block, alpha) in alpha.iter().enumerate() {
-        let first = block * WIDTH;
-        for i in 0..WIDTH {
-            for j in 0..WIDTH {
-                to[(first + i) * n + first + j] = alpha[i][j];
-                if block + 1 < n / WIDTH {
-                    to[(first + WIDTH + i) * n + first + j] = beta[block][i][j];
-                    to[(first + j) * n + first + WIDTH + i] = beta[block][i][j];
-                }
-            }
-        }
-    }
-}
-
-/// Upper triangular R with `RᵀR = G`, its inverse, the smallest ratio of a pivot to its diagonal entry, and which
-/// columns depend on those before them (their rows of R and columns of the inverse are zero).
-fn cholesky(gram: &Square) -> (Square, Square, f64, u32) {
-    let mut upper = Square::default();
-    let mut worst = 1.0_f64;
-    let mut lost = 0_u32;
-    for k in 0..WIDTH {
-        let mut pivot = gram[k][k];
-        for row in &upper[..k] {
-            pivot -= row[k] * row[k];
-        }
-        let ratio = pivot / gram[k][k];
-        // False for NaN too.
-        let independent = ratio > 1e-13 && gram[k][k] > 0.0;
-        if !independent {
-            lost |= 1 << k;
-            continue;
-        }
-        worst = worst.min(ratio);
-        let root = pivot.sqrt();
-        upper[k][k] = root;
-        for j in k + 1..WIDTH {
-            let mut sum = 0.5 * (gram[k][j] + gram[j][k]);
-            for row in &upper[..k] {
-                sum -= row[k] * row[j];
-            }
-            upper[k][j] = sum / root;
-        }
-    }
-    let mut inverse = Square::default();
-    for j in (0..WIDTH).filter(|j| lost >> j & 1 == 0) {
-        inverse[j][j] = 1.0 / upper[j][j];
-        for i in (0..j).rev().filter(|i| lost >> i & 1 == 0) {
-            let sum = (i + 1..=j).fold(0.0, |sum, k| sum + upper[i][k] * inverse[k][j]);
-            inverse[i][j] = -sum / upper[i][i];
-        }
-    }
-    (upper, inverse, worst, lost)
-}
-
-fn product(a: &Square, b: &Square) -> Square {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..WIDTH).fold(0.0, |sum, k| sum + a[i][k] * b[k][j])))
 }
 
 /// Numbers between −1 and 1 (splitmix64).

@@ -7,7 +7,7 @@ use super::{
     lanes::WIDTH,
     pencil::Pencil,
     poll::{Poll, Stop},
-    slice::{Found, Side, Sides, join},
+    slice::{Found, Scales, Side, Sides, join, sharpen},
     thorough::thorough,
 };
 
@@ -17,9 +17,8 @@ const TARGET: f64 = 48.0;
 const MOST: usize = 76;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 36;
-/// Blocks after which it looks at its Ritz values for the first time, and every how many then.
-const FIRST_LOOK: usize = 14;
-const LOOK: usize = 2;
+/// Blocks after which it looks at its Ritz values for the first time; as many as most processes need but one.
+const FIRST_LOOK: usize = 18;
 
 /// Everything that the parts share while one of them works.
 #[derive(Debug, Default)]
@@ -38,6 +37,9 @@ pub(super) struct Part {
     /// What turns its λ into the mesh's.
     unit: f64,
     bands: Vec<Band>,
+    /// Where the chain begins, in the scaled unit, and how many eigenvalues are below: zero and none, unless only a
+    /// stretch of the spectrum is wanted.
+    origin: (f64, usize),
     /// The right side of the last shift, if that process ran in this session.
     right: Option<Side>,
 }
@@ -53,7 +55,7 @@ impl Part {
                 bands.push(band.clone());
             }
         }
-        Self { number, pencil, measure, unit, bands, right: None }
+        Self { number, pencil, measure, unit, bands, origin: (0.0, 0), right: None }
     }
 
     pub(super) fn bands(&self) -> &[Band] {
@@ -62,7 +64,7 @@ impl Part {
 
     /// Below which λ of the mesh all eigenvalues are known.
     pub(super) fn frontier(&self) -> f64 {
-        self.bands.last().map_or(0.0, |band| band.upper)
+        self.bands.last().map_or(self.origin.0 * self.unit, |band| band.upper)
     }
 
     /// Whether its smallest eigenvalue is zero.
@@ -75,7 +77,43 @@ impl Part {
     }
 
     fn counted(&self) -> usize {
-        self.bands.last().map_or(0, |band| band.above)
+        self.bands.last().map_or(self.origin.1, |band| band.above)
+    }
+
+    /// Lets the chain begin below a λ of the mesh, at a shift that is returned with the number of eigenvalues below it.
+    ///
+    /// # Errors
+    /// When cancelled, or when no shift there will do.
+    pub(super) fn begin_below(
+        &mut self,
+        lambda: f64,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<(f64, usize), Advance> {
+        let mut sigma = lambda / self.unit;
+        let half = self.first_half();
+        for _ in 0..60 {
+            sigma -= 0.013 * half;
+            if sigma <= 0.0 {
+                return Ok((0.0, 0));
+            }
+            let Some(below) = self.factor(tools, sigma, poll)? else { continue };
+            let near = 1e-6 * half / TARGET;
+            let task = Task { sigma, above: below, left: 0.0, right: Some(half), near };
+            match self.process(tools, task, poll) {
+                Ok(sides) => self.right = Some(sides.right),
+                Err(Advance::TooNear) => continue,
+                Err(other) => return Err(other),
+            }
+            self.origin = (sigma, below);
+            return Ok((sigma * self.unit, below));
+        }
+        Err(Advance::Uncertified { at: lambda })
+    }
+
+    /// Half of what a slice spans by Weyl's law: λ grows by 4π over the area from one eigenvalue to the next.
+    fn first_half(&self) -> f64 {
+        0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure
     }
 
     /// Ends of the last band in the scaled unit, and its eigenvalues.
@@ -115,7 +153,8 @@ impl Part {
             self.right = Some(self.process(tools, task, poll)?.right);
         }
         let (lower, mut upper) = match self.last() {
-            None => (0.0, 0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure),
+            None if self.origin.0 > 0.0 => (self.origin.0, self.origin.0 + 2.0 * self.first_half()),
+            None => (0.0, self.first_half()),
             Some((lower, upper, count)) => (upper, upper + Self::step(lower, upper, count)),
         };
         let below = self.counted();
@@ -153,11 +192,12 @@ impl Part {
                 Err(other) => return Err(other),
             };
             let joined = join(&right.found, &sides.left.found, total);
-            let found = match joined {
+            let mut found = match joined {
                 Some(found) => found,
                 None => thorough(&self.pencil, tools, lower..upper, total, self.seed(1), poll)?
                     .ok_or(Advance::Uncertified { at: upper * self.unit })?,
             };
+            sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
             self.right = task.right.map(|_| sides.right);
             return self.finish(lower, upper, above, found);
         }
@@ -166,7 +206,8 @@ impl Part {
 
     /// Where the right side of the process below a band gives over to the left side of the one above it.
     fn middle(&self, place: usize) -> f64 {
-        place.checked_sub(1).map_or(0.0, |before| {
+        let start = if self.origin.0 > 0.0 { self.origin.0 + self.first_half() } else { 0.0 };
+        place.checked_sub(1).map_or(start, |before| {
             let band = &self.bands[before];
             let (lower, upper) = (band.lower / self.unit, band.upper / self.unit);
             upper + 0.5 * Self::step(lower, upper, band.values.len())
@@ -176,7 +217,11 @@ impl Part {
     /// Factors at σ and counts; `None` when rounding may have spoilt the factor, so that σ has to move.
     fn factor(&self, tools: &mut Tools, sigma: f64, poll: &mut Poll) -> Result<Option<usize>, Advance> {
         match tools.factor.compute(&self.pencil.symbolic, &self.pencil.matrix, sigma, poll) {
-            Ok(negative) => Ok(tools.factor.is_sound().then_some(negative)),
+            Ok(negative) => {
+                #[cfg(test)]
+                let negative = tools.scratch.tamper.count(negative);
+                Ok(tools.factor.is_sound().then_some(negative))
+            }
             Err(Stop::Pivot) => Ok(None),
             Err(Stop::Cancelled) => Err(Advance::Cancelled),
         }
@@ -197,13 +242,18 @@ impl Part {
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
         let spacing = (left + right.unwrap_or(left)) / TARGET;
+        let mut look = FIRST_LOOK;
         for blocks in 1..=most {
             krylov.step(poll)?;
-            if blocks != most && (blocks < FIRST_LOOK || !(blocks - FIRST_LOOK).is_multiple_of(LOOK)) {
+            if blocks != most && blocks != look {
                 continue;
             }
             let Some(ritz) = krylov.ritz(poll) else { break };
-            let sides = Sides::new(&ritz, sigma, spacing, 1e-4 * sigma);
+            let scales = Scales { sigma, spacing, least: 1e-4 * sigma, accuracy: krylov.accuracy() };
+            #[cfg_attr(not(test), expect(unused_mut, reason = "a test changes what was found"))]
+            let mut sides = Sides::new(&ritz, scales);
+            #[cfg(test)]
+            krylov.tamper(&mut sides);
             if sides.nearest < near {
                 return Err(Advance::TooNear);
             }
@@ -215,16 +265,23 @@ impl Part {
                 done.right = sides.right;
             }
             let wanting = |side: &Side, reach: f64, all: usize| side.reach < reach && side.found.len() < all;
-            if !wanting(&done.left, left, above) && !right.is_some_and(|right| wanting(&done.right, right, beyond)) {
+            let share = if wanting(&done.left, left, above) {
+                done.left.reach / left
+            } else if let Some(right) = right.filter(|right| wanting(&done.right, *right, beyond)) {
+                done.right.reach / right
+            } else {
                 break;
-            }
+            };
+            // What is looked at, and when, must not depend on the right side before the left one is done: whether
+            // that is wanted depends on how many eigenvalues are asked for.
+            look = blocks + if share < 0.6 { 3 } else { 1 + usize::from(share < 0.85) };
         }
         Ok(done)
     }
 
     /// Appends the band.
     fn finish(&mut self, lower: f64, upper: f64, above: usize, mut found: Vec<Found>) -> Result<(), Advance> {
-        let first = self.bands.is_empty();
+        let first = self.bands.is_empty() && self.origin.0 == 0.0;
         let failed = Advance::Uncertified { at: upper * self.unit };
         let zeros = usize::from(first && self.pencil.kernel);
         if zeros == 1 {
@@ -233,7 +290,7 @@ impl Part {
             if zero.value.abs() > 1e-7 * upper {
                 return Err(failed);
             }
-            *zero = Found { value: 0.0, near: 0.0, error: 0.0 };
+            *zero = Found::exactly(0.0, 0.0);
         }
         if found.get(zeros).is_some_and(|next| next.value <= 0.0) {
             return Err(failed);

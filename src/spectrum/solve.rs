@@ -17,6 +17,7 @@ pub(super) fn solve(
     count: usize,
     known: &[Band],
     watch: &dyn Watch,
+    tools: &mut Tools,
 ) -> Result<Spectrum, SpectrumError> {
     let order = laplacian.matrix.order();
     let count = count.min(order);
@@ -40,7 +41,6 @@ pub(super) fn solve(
         poll.meter.timings.multiplications += pencil.symbolic.multiplications();
         state.parts.push(Part::new(number, pencil, laplacian.unit(), known));
     }
-    let mut tools = Tools::default();
     loop {
         let done = state.certified();
         watch.progress(done.min(count), count);
@@ -48,7 +48,7 @@ pub(super) fn solve(
             break;
         }
         let Some(part) = state.lowest() else { break };
-        match part.advance(&mut tools, count, &mut poll) {
+        match part.advance(tools, count, &mut poll) {
             Ok(()) => {}
             Err(Advance::Cancelled) => return Err(SpectrumError::Cancelled { finished: state.bands() }),
             Err(Advance::Uncertified { at }) => {

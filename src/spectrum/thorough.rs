@@ -11,7 +11,7 @@ use super::{
     part::Tools,
     pencil::Pencil,
     poll::{Poll, Stop},
-    slice::{Found, Sides},
+    slice::{Found, Scales, Sides},
 };
 
 /// Processes without a new eigenvalue after which it gives up.
@@ -56,7 +56,12 @@ pub(super) fn thorough(
             krylov.step(poll)?;
         }
         let Some(ritz) = krylov.ritz(poll) else { continue };
-        let sides = Sides::new(&ritz, pole, width / total as f64, 1e-4 * slice.end);
+        let scales =
+            Scales { sigma: pole, spacing: width / total as f64, least: 1e-4 * slice.end, accuracy: krylov.accuracy() };
+        #[cfg_attr(not(test), expect(unused_mut, reason = "a test changes what was found"))]
+        let mut sides = Sides::new(&ritz, scales);
+        #[cfg(test)]
+        krylov.tamper(&mut sides);
         let new: Vec<Found> = sides
             .left
             .found

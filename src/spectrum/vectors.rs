@@ -7,6 +7,7 @@
 //! The eigenvalues of a band are cut into windows of about eight by a rule that knows nothing of what is wanted, and
 //! a window is computed whole. So an eigenvector is the same bits in whatever company it was asked for.
 
+use self::forms::{mass_product, rayleigh, residual};
 use super::{
     Spectrum, SpectrumError,
     band::Band,
@@ -20,9 +21,11 @@ use super::{
     timings::Cost,
 };
 use crate::{
-    laplacian::{Laplacian, MassMatrix, Symmetric},
+    laplacian::{Laplacian, Symmetric},
     watch::Watch,
 };
+
+mod forms;
 
 /// One eigenvector, with xᵀBx = 1.
 ///
@@ -82,7 +85,7 @@ pub(super) fn eigenvectors(
                 .get(large_one as usize)
                 .map_or(Ok(Vec::new()), |rows| of_part(laplacian, rows, spectrum, part, &mine, &mut tools, &mut poll)),
         };
-        for (at, mut vector) in made.map_err(|missing| missing.error())? {
+        for (at, mut vector) in made.map_err(|missing| missing.error(laplacian.unit()))? {
             vector.index = wanted[at];
             turn(&mut vector.values);
             found[at] = Some(vector);
@@ -101,10 +104,10 @@ enum Missing {
 }
 
 impl Missing {
-    fn error(&self) -> SpectrumError {
+    fn error(&self, unit: f64) -> SpectrumError {
         match self {
             Self::Cancelled => SpectrumError::Cancelled { finished: Vec::new() },
-            Self::Lost(at) => SpectrumError::Uncertified { at: *at, finished: Vec::new() },
+            Self::Lost(at) => SpectrumError::Uncertified { at: at * unit, finished: Vec::new() },
         }
     }
 }
@@ -209,9 +212,10 @@ fn of_part(
                 window(&pencil, &values, first..end, spacing, tools, poll)?
             };
             for &(answer, index) in here {
-                let (value, x) = &pairs[index - range.start];
-                let bound = residual(&pencil.matrix, *value, x);
-                made.push((answer, placed(laplacian, &rows, (*value, bound), x)));
+                let (zero, x) = &pairs[index - range.start];
+                let value = if *zero { 0.0 } else { rayleigh(&pencil.matrix, x) };
+                let bound = residual(&pencil.matrix, value, x);
+                made.push((answer, placed(laplacian, &rows, (value, bound), x)));
             }
             poll.charge(Cost::Vectors);
         }
@@ -235,9 +239,9 @@ fn windows(values: &[f64], zeros: usize, spacing: f64) -> Vec<(usize, usize)> {
 }
 
 /// The kernel of a connected piece that nothing holds.
-fn constant(matrix: &Symmetric) -> (f64, Vec<f64>) {
+fn constant(matrix: &Symmetric) -> (bool, Vec<f64>) {
     debug_assert!(has_kernel(matrix));
-    (0.0, vec![1.0 / matrix.total_mass().sqrt(); matrix.order()])
+    (true, vec![1.0 / matrix.total_mass().sqrt(); matrix.order()])
 }
 
 /// Poles for a window, best first: in the middle of wide gaps near its centre.
@@ -255,7 +259,7 @@ fn poles(values: &[f64], window: &std::ops::Range<usize>, spacing: f64) -> Vec<f
     scored.into_iter().map(|(_, pole)| pole).collect()
 }
 
-/// The eigenpairs of one window, ascending.
+/// The eigenvectors of one window by ascending eigenvalues, and that they are not of the kernel.
 fn window(
     pencil: &Pencil,
     values: &[f64],
@@ -263,7 +267,7 @@ fn window(
     spacing: f64,
     tools: &mut Tools,
     poll: &mut Poll,
-) -> Result<Vec<(f64, Vec<f64>)>, Missing> {
+) -> Result<Vec<(bool, Vec<f64>)>, Missing> {
     let stopped = |stop| match stop {
         Stop::Cancelled => Missing::Cancelled,
         Stop::Pivot => Missing::Lost(values[window.start]),
@@ -307,13 +311,12 @@ fn window(
     }
     let mut x = columns(&krylov.vectors(&chosen).ok_or_else(lost)?, chosen.len());
     poll.charge(Cost::Vectors);
-    let mut quotients = Vec::new();
     for _ in 0..2 {
         let y = inverse_step(pencil, factor, &x, poll).map_err(stopped)?;
-        (quotients, x) = project(&pencil.matrix, &x, &y).ok_or_else(lost)?;
+        x = project(&pencil.matrix, &x, &y).ok_or_else(lost)?;
         poll.charge(Cost::Vectors);
     }
-    Ok(quotients.iter().map(|quotient| sigma + quotient).zip(x).collect())
+    Ok(x.into_iter().map(|x| (false, x)).collect())
 }
 
 /// The first so many vectors of some blocks.
@@ -345,8 +348,9 @@ fn inverse_step(
     Ok(columns(&blocks, x.len()))
 }
 
-/// Rayleigh–Ritz with y = (L − σB)⁻¹Bx, for which yᵀ(L − σB)y = yᵀBx: the λ − σ, ascending, and B-orthonormal vectors.
-fn project(matrix: &Symmetric, x: &[Vec<f64>], y: &[Vec<f64>]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+/// Rayleigh–Ritz with y = (L − σB)⁻¹Bx, for which yᵀ(L − σB)y = yᵀBx: B-orthonormal vectors by ascending
+/// eigenvalues.
+fn project(matrix: &Symmetric, x: &[Vec<f64>], y: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let k = x.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b);
     // With columns of one norm the Gram matrix is well scaled.
@@ -376,45 +380,5 @@ fn project(matrix: &Symmetric, x: &[Vec<f64>], y: &[Vec<f64>]) -> Option<(Vec<f6
         }
         sum
     });
-    let vectors = vectors.collect();
-    Some((pairs.iter().map(|pair| pair.0).collect(), vectors))
-}
-
-/// B x.
-fn mass_product(matrix: &Symmetric, x: &[f64]) -> Vec<f64> {
-    match &matrix.mass {
-        MassMatrix::Unit => x.to_vec(),
-        MassMatrix::Diagonal(values) => values.iter().zip(x).map(|(b, x)| b * x).collect(),
-        MassMatrix::Full(_) => {
-            let mut product = vec![0.0; x.len()];
-            for (row, column, _, b) in matrix.entries() {
-                product[row] += b * x[column];
-                if row != column {
-                    product[column] += b * x[row];
-                }
-            }
-            product
-        }
-    }
-}
-
-/// A bound on ‖Lx − λBx‖ in the norm of B⁻¹ for xᵀBx = 1, and so on the distance of λ from an eigenvalue (Parlett,
-/// *The Symmetric Eigenvalue Problem*, § 15.9).
-///
-/// A consistent B is at least a quarter of its lumped D in the order of forms, because that holds for the matrix
-/// area/12 (1 + I) of every triangle, so rᵀB⁻¹r ≤ 4 rᵀD⁻¹r.
-fn residual(matrix: &Symmetric, lambda: f64, x: &[f64]) -> f64 {
-    let n = matrix.order();
-    let (mut r, mut lumped) = (vec![0.0; n], vec![0.0; n]);
-    for (row, column, l, b) in matrix.entries() {
-        r[row] += (l - lambda * b) * x[column];
-        lumped[row] += b;
-        if row != column {
-            r[column] += (l - lambda * b) * x[row];
-            lumped[column] += b;
-        }
-    }
-    let square: f64 = r.iter().zip(&lumped).map(|(r, d)| r * r / d).sum();
-    let factor = if matches!(matrix.mass, MassMatrix::Full(_)) { 2.0 } else { 1.0 };
-    factor * square.sqrt()
+    Some(vectors.collect())
 }

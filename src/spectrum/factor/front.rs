@@ -7,16 +7,22 @@
 
 use std::ops::Range;
 
-use crate::spectrum::lanes::{Kernel, Lanes, Row, WIDTH};
+use crate::spectrum::{
+    lanes::{Kernel, Lanes, Row, WIDTH, dispatch},
+    poll::{Poll, Stop},
+};
 
-/// Eliminates the first `width` columns of a front of `size` (a multiple of eight) rows. Leaves the unit lower
-/// trapezoid of L in them, the pivots in `pivots`, and the update matrix in the remaining columns.
+/// A front, its size (a multiple of eight) and how many of its columns are eliminated.
+///
+/// What remains is the unit lower trapezoid of L in the first `width` columns, the pivots in `pivots`, and the update
+/// matrix in the other columns.
 ///
 /// L − σB is indefinite, and without a choice of pivots the factors of a 10 000-vertex mesh grow by 10⁶. Pivots are
 /// therefore taken from the diagonal of the front's own columns, a large one first (as in LAPACK's `pstrf`), which
 /// leaves the structure of the factor as it is.
-pub(super) struct Eliminate<'a> {
-    pub front: &'a mut [f64],
+#[derive(Debug)]
+pub(super) struct Front<'a> {
+    pub values: &'a mut [f64],
     /// As large as the pivot columns of the front: D Lᵀ.
     pub scaled: &'a mut [f64],
     pub size: usize,
@@ -29,51 +35,84 @@ pub(super) struct Eliminate<'a> {
 /// A pivot is taken where it stands unless another one is so many times larger.
 const MUCH_LARGER: f64 = 4.0;
 
-impl Kernel for Eliminate<'_> {
+impl Front<'_> {
+    /// Eliminates.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub(super) fn eliminate(&mut self, poll: &mut Poll) -> Result<(), Stop> {
+        let (size, width) = (self.size, self.width);
+        for at in 0..width {
+            self.pivots[at] = self.values[at * size + at];
+            self.order[at] = at as u32;
+        }
+        for done in (0..width).step_by(WIDTH) {
+            dispatch(Pivots { front: self, done });
+            poll.spend(WIDTH * size * (width - done))?;
+        }
+        dispatch(Beside { front: self });
+        for next in (width.next_multiple_of(WIDTH)..size).step_by(WIDTH) {
+            dispatch(Others { front: self, next });
+            poll.spend(WIDTH * width * (size - next))?;
+        }
+        Ok(())
+    }
+}
+
+/// The pivots from `done` on, eight or what is left, and their share in the pivot columns after them.
+struct Pivots<'a, 'f> {
+    front: &'a mut Front<'f>,
+    done: usize,
+}
+
+impl Kernel for Pivots<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { front, scaled, size, width, pivots, order } = self;
-        for at in 0..width {
-            pivots[at] = front[at * size + at];
-            order[at] = at as u32;
-        }
-        let mut done = 0;
-        while done < width {
-            let end = (done + WIDTH).min(width);
-            for pivot in done..end {
-                let best = (pivot..width).fold(
-                    pivot,
-                    |best, at| {
-                        if pivots[at].abs() > pivots[best].abs() { at } else { best }
-                    },
-                );
-                if pivots[best].abs() > MUCH_LARGER * pivots[pivot].abs() {
-                    exchange(front, scaled, size, done, pivot, best);
-                    pivots.swap(pivot, best);
-                    order.swap(pivot, best);
-                }
-                column(lanes, front, scaled, size, done, pivot);
-                pivots[pivot] = scaled[pivot * size + pivot];
-                let (scaled, own) = (&scaled[pivot * size..], &front[pivot * size..]);
-                for at in pivot + 1..width {
-                    pivots[at] -= scaled[at] * own[at];
-                }
+        let done = self.done;
+        let Front { values, scaled, size, width, pivots, order } = self.front;
+        let (size, width) = (*size, *width);
+        let end = (done + WIDTH).min(width);
+        for pivot in done..end {
+            let larger = |best: usize, at: usize| if pivots[at].abs() > pivots[best].abs() { at } else { best };
+            let best = (pivot..width).fold(pivot, larger);
+            if pivots[best].abs() > MUCH_LARGER * pivots[pivot].abs() {
+                exchange(values, scaled, size, done, pivot, best);
+                pivots.swap(pivot, best);
+                order.swap(pivot, best);
             }
-            let mut next = done + WIDTH;
-            while next < width {
-                let (left, right) = front.split_at_mut(next * size);
-                subtract(lanes, left, scaled, &mut right[..WIDTH * size], size, next, done..end);
-                next += WIDTH;
+            column(lanes, values, scaled, size, done, pivot);
+            pivots[pivot] = scaled[pivot * size + pivot];
+            let (scaled, own) = (&scaled[pivot * size..], &values[pivot * size..]);
+            for at in pivot + 1..width {
+                pivots[at] -= scaled[at] * own[at];
             }
-            done += WIDTH;
         }
-        // The block with the last pivots may hold other columns too. They have the pivots of earlier blocks already.
-        let mut next = width.next_multiple_of(WIDTH);
-        for other in width..next {
-            let first = width - width % WIDTH;
-            let (left, right) = front.split_at_mut(other * size);
+        let mut next = done + WIDTH;
+        while next < width {
+            let (left, right) = values.split_at_mut(next * size);
+            subtract(lanes, left, scaled, &mut right[..WIDTH * size], size, next, done..end);
+            next += WIDTH;
+        }
+    }
+}
+
+/// The columns in one block of eight with the last pivots. They have the pivots of earlier blocks already.
+struct Beside<'a, 'f> {
+    front: &'a mut Front<'f>,
+}
+
+impl Kernel for Beside<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Front { values, scaled, size, width, .. } = self.front;
+        let (size, width) = (*size, *width);
+        let first = width - width % WIDTH;
+        for other in width..width.next_multiple_of(WIDTH) {
+            let (left, right) = values.split_at_mut(other * size);
             for pivot in first..width {
                 let factor = lanes.splat(scaled[pivot * size + other]);
                 let from: &[Row] = left[pivot * size + first..(pivot + 1) * size].as_chunks().0;
@@ -83,11 +122,23 @@ impl Kernel for Eliminate<'_> {
                 }
             }
         }
-        while next < size {
-            let (left, right) = front.split_at_mut(next * size);
-            subtract(lanes, left, scaled, &mut right[..WIDTH * size], size, next, 0..width);
-            next += WIDTH;
-        }
+    }
+}
+
+/// All pivots' share in the eight columns from `next` on.
+struct Others<'a, 'f> {
+    front: &'a mut Front<'f>,
+    next: usize,
+}
+
+impl Kernel for Others<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Front { values, scaled, size, width, .. } = self.front;
+        let (left, right) = values.split_at_mut(self.next * *size);
+        subtract(lanes, left, scaled, &mut right[..WIDTH * *size], *size, self.next, 0..*width);
     }
 }
 

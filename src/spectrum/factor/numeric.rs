@@ -1,10 +1,10 @@
 //! The factorisation for one shift.
 
-use super::{Symbolic, front::Eliminate};
+use super::{Symbolic, front::Front};
 use crate::{
     laplacian::{MassMatrix, Symmetric},
     spectrum::{
-        lanes::{Buffer, WIDTH, dispatch},
+        lanes::{Buffer, WIDTH},
         poll::{Poll, Stop},
         timings::Cost,
     },
@@ -59,18 +59,18 @@ impl Factor {
             let (begin, width, rows) = symbolic.node(at);
             let used = width + rows.len();
             let size = used.next_multiple_of(WIDTH);
-            let work = used * used * width;
-            poll.spend(work)?;
+            poll.spend(used * used)?;
             let front = &mut self.front.flat()[..size * size];
             front.fill(0.0);
             entries(symbolic, matrix, sigma, begin..begin + width, size, front);
             for child in children(symbolic, at) {
                 self.absorb(symbolic, child, size);
             }
-            let front = &mut self.front.flat()[..size * size];
             let pivots = &mut self.inverse[begin..begin + width];
             let order = &mut self.order[begin..begin + width];
-            dispatch(Eliminate { front, scaled: self.scaled.flat(), size, width, pivots, order });
+            let values = &mut self.front.flat()[..size * size];
+            let scaled = self.scaled.flat();
+            Front { values, scaled, size, width, pivots: &mut *pivots, order: &mut *order }.eliminate(poll)?;
             self.moved[at] = order.iter().enumerate().any(|(at, &was)| at as u32 != was);
             for pivot in pivots {
                 if !pivot.is_normal() {

@@ -56,8 +56,8 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
     let (single, _, rounded) = run(Purpose::Values);
     let (ritz, vectors, defect) = run(Purpose::Vectors(&[]));
     assert!(defect < 1e-12, "{defect:e}");
-    // The copies are rounded to 6e-8; what they are copies of is closer.
-    assert!(rounded < 1e-7, "{rounded:e}");
+    // Single precision leaves so much; the projected operator feels its square.
+    assert!(rounded < 5e-7, "{rounded:e}");
     for (single, double) in single[..40].iter().zip(&ritz) {
         let bound = 1e-12 * double.theta.abs() + 10.0 * double.residual;
         assert!((single.theta - double.theta).abs() < bound, "{single:?} {double:?}");
@@ -98,13 +98,13 @@ fn dependent_columns_are_replaced() {
     let before = krylov.scratch.work.rows().to_vec();
     let upper = krylov.normalise(0, STRICTLY, &mut poll).unwrap();
     let gram =
-        dispatch(Multiply { mass: &pencil.mass, x: krylov.scratch.work.rows(), to: krylov.scratch.mass.rows_mut() });
+        dispatch(Multiply { mass: &pencil.mass, x: krylov.scratch.next.rows(), to: krylov.scratch.mass.rows_mut() });
     for (i, row) in gram.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
-            assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-12);
+            assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-11, "{i} {j} {entry}");
         }
     }
-    for (before, q) in before.iter().zip(krylov.scratch.work.rows()) {
+    for (before, q) in before.iter().zip(krylov.scratch.next.rows()) {
         for (j, before) in before.iter().enumerate() {
             let product: f64 = (0..WIDTH).map(|k| q[k] * upper[k][j]).sum();
             assert!((product - before).abs() < 1e-10, "column {j}: {product} {before}");
