@@ -19,10 +19,12 @@ pub use self::exit::Exit;
 
 mod args;
 mod cache;
+mod doctor;
 mod exit;
 mod interrupt;
 mod open;
 mod output;
+mod papers;
 mod progress;
 mod report;
 mod spectrum;
@@ -45,6 +47,9 @@ fn dispatch(arguments: Arguments) -> Result<Exit, exit::Failure> {
         Some(Command::Spectrum(arguments)) => spectrum::run(&arguments),
         Some(Command::Synth(arguments)) => synth::run(&arguments),
         Some(Command::Cache(arguments)) => cache::run(&arguments),
+        Some(Command::Doctor(arguments)) => doctor::run(&arguments),
+        Some(Command::Completions(arguments)) => papers::completions(&arguments),
+        Some(Command::Man) => papers::man(),
         None => match &arguments.dir {
             Some(dir) => open::run(dir, &arguments.study),
             None => Err(exit::Failure::Usage("a folder is needed".to_owned())),

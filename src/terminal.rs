@@ -51,6 +51,14 @@ pub enum TerminalError {
     Engine(#[source] io::Error),
 }
 
+/// Columns and rows of the terminal.
+///
+/// # Errors
+/// What the system says where there is none.
+pub fn size() -> io::Result<(u16, u16)> {
+    ratatui::crossterm::terminal::size()
+}
+
 impl TerminalError {
     fn io(what: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { what, source }

@@ -42,5 +42,6 @@ pub mod shape;
 mod state;
 mod trial;
 mod update;
+mod watcher;
 mod why;
 pub mod worker;

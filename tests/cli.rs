@@ -81,6 +81,28 @@ fn a_recipe_of_the_screen_gives_the_same_report_bit_for_bit() {
 }
 
 #[test]
+fn the_doctor_says_what_it_finds() {
+    let room = Room::with_study();
+    let well = tui(&room, &["doctor", "shapes", "--cache", "cache"]);
+    assert_eq!(well.code, Some(0), "{}", well.out);
+    assert!(well.out.contains("2 classes, D "), "{}", well.out);
+    let ill = tui(&room, &["doctor", "nowhere"]);
+    assert_eq!(ill.code, Some(1));
+    assert!(ill.out.lines().any(|line| line.starts_with("BAD  data") && line.contains("nowhere")), "{}", ill.out);
+}
+
+#[test]
+fn completions_and_manual_are_made_from_the_arguments() {
+    let room = Room::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let made = tui(&room, &["completions", shell]);
+        assert!(made.code == Some(0) && made.out.contains("report"), "{shell}: {}", made.err);
+    }
+    let manual = tui(&room, &["man"]);
+    assert!(manual.code == Some(0) && manual.out.contains(".TH tui 1"), "{}", manual.out);
+}
+
+#[test]
 fn what_is_not_there_exits_with_1_and_one_line() {
     let room = Room::new();
     fs::create_dir(room.path("void")).unwrap();

@@ -12,7 +12,7 @@ use std::{
 
 use eigenselect::{
     dataset,
-    query::{Answer, Config, Finding, Host, ModelState, Question, Reply, Settings},
+    query::{Answer, Config, Finding, Host, ModelState, Question, Reply, Settings, Stage},
     spectrum::Normalisation,
     store::Store,
     study::Method,
@@ -182,6 +182,23 @@ fn questions_are_answered_again_when_a_knob_changes_their_answer() {
     assert!(matches!(&reply.finding, Ok(Finding::Function(values)) if values.len() == vertices), "{reply:?}");
     let reply = wait_for_reply(&updates, function);
     assert_eq!(reply.finding.as_ref().unwrap_err().as_ref(), "the model has no eigenvalue 9999");
+}
+
+#[test]
+fn a_data_set_that_changes_shows_by_itself() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 2, 4);
+    let (_worker, updates) = spawn(setup(&data, &cache, &small()));
+    let before = wait_for(&updates, |answer| settled(answer) && answer.members.len() == 8);
+    let first = before.models[0].path.clone();
+    std::fs::write(first.with_file_name("added.off"), common::off(0, 1.77, 0.3, 6)).unwrap();
+    let after = wait_for(&updates, |answer| settled(answer) && answer.members.len() == 9);
+    let spectra = after.stages.iter().find(|row| row.stage == Stage::Spectrum).unwrap();
+    assert_eq!((spectra.ran, spectra.memory), (1, 8), "the others are known");
+    std::fs::remove_file(&first).unwrap();
+    let gone = wait_for(&updates, |answer| settled(answer) && answer.models.len() == 8);
+    assert!(gone.models.iter().all(|model| model.path != first));
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::{path::PathBuf, time::Duration};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::{doctor::DoctorArguments, papers::CompletionsArguments};
 use crate::{
     laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     mesh::synth::class_names,
@@ -68,6 +69,12 @@ pub(super) enum Command {
     Synth(SynthArguments),
     /// Look after the spectra kept between sessions
     Cache(CacheArguments),
+    /// Say how terminal, cache, machine and data set are; exit code 1 if something is wrong
+    Doctor(DoctorArguments),
+    /// Print the completions of a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page
+    Man,
 }
 
 /// What the screen and the report have in common.

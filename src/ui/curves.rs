@@ -110,9 +110,26 @@ pub(super) fn chart(state: &State, figure: Figure, pane: &mut Pane<'_>, small: b
     pane::cut_top(&mut area, if small { 1 } else { 2 });
     let area = pane::inset(area, 1);
     let mut pane = pane.part(area);
-    plot(curve, best, k, state.logarithmic).draw(&mut pane);
+    let mut plot = plot(curve, best, k, state.logarithmic);
+    pinned(state, figure, &mut plot);
+    plot.draw(&mut pane);
     if stale {
         pane.fade();
+    }
+}
+
+/// Adds the curves on D of the pins, each with its letter at its end.
+fn pinned(state: &State, figure: Figure, plot: &mut Plot) {
+    for pin in &state.pins {
+        let Some(first_k) = &pin.figures.first_k else { continue };
+        let (curve, _) = figure.curve(first_k);
+        let points: Vec<(f64, f64)> = (1..).map(f64::from).zip(curve.train.iter().copied()).collect();
+        // Letters stand apart, so that pins with like curves do not cover each other's.
+        let place = (pin.letter as usize).saturating_sub('A' as usize);
+        let at = points.get(points.len().saturating_sub(1).min(2 + 3 * place)).copied();
+        plot.marks.extend(at.map(|at| Mark { at, character: pin.letter, role: Role::Strong }));
+        // Below the curves of the present settings.
+        plot.series.insert(0, Series { points, role: Role::Faint, stroke: Stroke::Dotted, plain: ':' });
     }
 }
 

@@ -4,7 +4,6 @@
 //! the study is made again and again on the models that are there.
 
 use std::{
-    io::Write as _,
     panic::{AssertUnwindSafe, catch_unwind},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError, mpsc},
@@ -15,13 +14,16 @@ use std::{
 use super::{
     Command, Trial, Update,
     shape::Painter,
-    trial::{self, Recall},
+    trial::Recall,
+    watcher::{Sight, Watcher},
 };
 use crate::{
     dataset::{self, DataSet},
     query::{Config, Host, Members, News, Piece, Question, Reply, Settings},
     store::Store,
 };
+
+mod asked;
 
 /// Where the models are and how they are worked on.
 #[derive(Debug, Clone)]
@@ -56,6 +58,8 @@ enum Message {
     Surface(Reply),
     /// Figures under other parameters.
     Trial(Trial),
+    /// The data set changed.
+    Changed,
     /// A file was written, or why not.
     Written(PathBuf, Result<(), String>),
 }
@@ -94,8 +98,18 @@ impl Worker {
         let (messages, inbox) = mpsc::channel();
         let outbox = messages.clone();
         let thread = std::thread::Builder::new().name("worker".into()).spawn(move || {
+            // Looked at before it is opened, so that no change falls between the two.
+            let seen = Sight::of(&setup);
             let work = || match setup.open() {
-                Ok(data) => Desk::new(setup, data, outbox, &notify).work(&inbox),
+                Ok(data) => {
+                    let news = outbox.clone();
+                    let changed = move || {
+                        let _ = news.send(Message::Changed);
+                    };
+                    let watcher = Watcher::start(setup.clone(), seen, changed);
+                    Desk::new(setup, data, outbox, &notify).work(&inbox);
+                    drop(watcher);
+                }
                 Err(reason) => notify(Update::Fatal(reason)),
             };
             if catch_unwind(AssertUnwindSafe(work)).is_err() {
@@ -210,6 +224,10 @@ impl<'a> Desk<'a> {
                     Message::Command(Command::Ask(questions)) => asked = Some(questions),
                     Message::Command(Command::Look(questions)) => self.look(questions),
                     Message::Command(Command::Write { path, text, overwrite }) => self.write(path, text, overwrite),
+                    Message::Changed => {
+                        self.looks = LOOKS;
+                        self.obey(&Command::Rescan);
+                    }
                     Message::Written(path, outcome) => (self.notify)(Update::Written(path, outcome)),
                     Message::Command(Command::Try(settings)) => self.try_out(settings),
                     Message::Trial(trial) => (self.notify)(Update::Trial(Arc::new(trial))),
@@ -323,91 +341,6 @@ impl<'a> Desk<'a> {
             Err(error) => self.host.warn(&format!("the system has no thread to give: {error}")),
         }
         self.study.is_some()
-    }
-
-    /// Asks what the screen wants to know, each question on a thread of its own. What is asked about the study waits
-    /// until there is one.
-    fn ask(&mut self) {
-        self.askings += 1;
-        let number = self.askings;
-        let members = self.study.as_ref().map(|(_, members, _)| members).or(self.studied.as_ref());
-        for question in &self.questions {
-            let outbox = self.outbox.clone();
-            let tell = move |reply: Reply| {
-                let _ = outbox.send(Message::Reply(number, reply));
-            };
-            let thread = std::thread::Builder::new().name("question".into());
-            let Some(members) = members.cloned() else { continue };
-            let asking = self.host.ask(members, question.clone());
-            let begun = thread.spawn(move || {
-                if let Some(reply) = asking.answer() {
-                    tell(reply);
-                }
-            });
-            if let Err(error) = begun {
-                self.host.warn(&format!("the system has no thread to give: {error}"));
-            }
-        }
-    }
-
-    /// Reads surfaces, all on one thread: nobody looks at several at once for long.
-    fn look(&mut self, questions: Vec<Question>) {
-        let looking: Vec<_> = questions.into_iter().filter_map(|question| self.host.look(question)).collect();
-        let outbox = self.outbox.clone();
-        let begun = std::thread::Builder::new().name("surfaces".into()).spawn(move || {
-            for looking in looking {
-                let _ = outbox.send(Message::Surface(looking.answer()));
-            }
-        });
-        if let Err(error) = begun {
-            self.host.warn(&format!("the system has no thread to give: {error}"));
-        }
-    }
-
-    /// Writes a file on a thread of its own: the disk may be a slow one.
-    fn write(&mut self, path: PathBuf, text: String, overwrite: bool) {
-        let outbox = self.outbox.clone();
-        let begun = std::thread::Builder::new().name("writer".into()).spawn(move || {
-            let mut options = std::fs::OpenOptions::new();
-            options.write(true);
-            if overwrite {
-                options.create(true).truncate(true)
-            } else {
-                options.create_new(true)
-            };
-            let written = options.open(&path).and_then(|mut file| file.write_all(text.as_bytes()));
-            let outcome = written.map_err(|error| match error.kind() {
-                std::io::ErrorKind::AlreadyExists => "there is such a file already; choose another name".to_owned(),
-                _ => format!("cannot be written: {error}"),
-            });
-            let _ = outbox.send(Message::Written(path, outcome));
-        });
-        if let Err(error) = begun {
-            self.host.warn(&format!("the system has no thread to give: {error}"));
-        }
-    }
-
-    /// Makes the study under other parameters, on a thread with a host of its own that shares the spectra.
-    fn try_out(&mut self, settings: Vec<Settings>) {
-        self.recall.call();
-        self.recall = Recall::default();
-        let Some(first) = settings.first() else { return };
-        let (host, recall, outbox) = (self.host.beside(first.clone()), self.recall.clone(), self.outbox.clone());
-        let begun = std::thread::Builder::new().name("trial".into()).spawn(move || {
-            trial::run(host, settings, &recall, &|trial| {
-                let _ = outbox.send(Message::Trial(trial));
-            });
-        });
-        if let Err(error) = begun {
-            self.host.warn(&format!("the system has no thread to give: {error}"));
-        }
-    }
-
-    /// Passes an answer on, unless the screen asks for something else by now.
-    fn reply(&self, number: u64, reply: Reply) {
-        if number == self.askings {
-            (self.notify)(Update::Reply(Arc::new(reply)));
-        }
     }
 
     fn learn(&mut self, number: u64, piece: Piece) {

@@ -83,6 +83,10 @@ impl Host {
 
     /// Takes in a value of the study of `members`.
     pub(crate) fn learn(&mut self, members: &Members, piece: Piece) {
+        // What is there of other models is not what this study will say, once no more models are to come.
+        if self.shown.places != members.places && self.complete() {
+            self.shown.outdate();
+        }
         self.shown.places = Arc::clone(&members.places);
         let shown = &mut self.shown;
         match piece {

@@ -1,0 +1,100 @@
+//! What the worker does for the screen besides the study: questions, surfaces, trials, files. Each has a thread of its
+//! own, so that the study never waits for it.
+
+use std::{io::Write as _, path::PathBuf, sync::Arc};
+
+use super::{
+    super::{
+        Update,
+        trial::{self, Recall},
+    },
+    Desk, Message,
+};
+use crate::query::{Question, Reply, Settings};
+
+impl Desk<'_> {
+    /// Asks what the screen wants to know, each question on a thread of its own. What is asked about the study waits
+    /// until there is one.
+    pub(super) fn ask(&mut self) {
+        self.askings += 1;
+        let number = self.askings;
+        let members = self.study.as_ref().map(|(_, members, _)| members).or(self.studied.as_ref());
+        for question in &self.questions {
+            let outbox = self.outbox.clone();
+            let tell = move |reply: Reply| {
+                let _ = outbox.send(Message::Reply(number, reply));
+            };
+            let thread = std::thread::Builder::new().name("question".into());
+            let Some(members) = members.cloned() else { continue };
+            let asking = self.host.ask(members, question.clone());
+            let begun = thread.spawn(move || {
+                if let Some(reply) = asking.answer() {
+                    tell(reply);
+                }
+            });
+            if let Err(error) = begun {
+                self.host.warn(&format!("the system has no thread to give: {error}"));
+            }
+        }
+    }
+
+    /// Reads surfaces, all on one thread: nobody looks at several at once for long.
+    pub(super) fn look(&mut self, questions: Vec<Question>) {
+        let looking: Vec<_> = questions.into_iter().filter_map(|question| self.host.look(question)).collect();
+        let outbox = self.outbox.clone();
+        let begun = std::thread::Builder::new().name("surfaces".into()).spawn(move || {
+            for looking in looking {
+                let _ = outbox.send(Message::Surface(looking.answer()));
+            }
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Writes a file on a thread of its own: the disk may be a slow one.
+    pub(super) fn write(&mut self, path: PathBuf, text: String, overwrite: bool) {
+        let outbox = self.outbox.clone();
+        let begun = std::thread::Builder::new().name("writer".into()).spawn(move || {
+            let mut options = std::fs::OpenOptions::new();
+            options.write(true);
+            if overwrite {
+                options.create(true).truncate(true)
+            } else {
+                options.create_new(true)
+            };
+            let written = options.open(&path).and_then(|mut file| file.write_all(text.as_bytes()));
+            let outcome = written.map_err(|error| match error.kind() {
+                std::io::ErrorKind::AlreadyExists => "there is such a file already; choose another name".to_owned(),
+                _ => format!("cannot be written: {error}"),
+            });
+            let _ = outbox.send(Message::Written(path, outcome));
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Makes the study under other parameters, on a thread with a host of its own that shares the spectra.
+    pub(super) fn try_out(&mut self, settings: Vec<Settings>) {
+        self.recall.call();
+        self.recall = Recall::default();
+        let Some(first) = settings.first() else { return };
+        let (host, recall, outbox) = (self.host.beside(first.clone()), self.recall.clone(), self.outbox.clone());
+        let begun = std::thread::Builder::new().name("trial".into()).spawn(move || {
+            trial::run(host, settings, &recall, &|trial| {
+                let _ = outbox.send(Message::Trial(trial));
+            });
+        });
+        if let Err(error) = begun {
+            self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Passes an answer on, unless the screen asks for something else by now.
+    pub(super) fn reply(&self, number: u64, reply: Reply) {
+        if number == self.askings {
+            (self.notify)(Update::Reply(Arc::new(reply)));
+        }
+    }
+}
