@@ -16,7 +16,7 @@ use eigenselect::{
     query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
     workbench::{
-        Action, Command, Effect, Figure, Filter, State, Trial, View, keymap, pins, recipe, shape::Style, update,
+        Action, Command, Effect, Figure, Filter, Leave, State, Trial, View, keymap, pins, recipe, shape::Style, update,
     },
 };
 use ratatui::{
@@ -474,6 +474,46 @@ fn no_size_panics() {
         for size in [(300, 100), (300, 1), (1, 100), (120, 17), (200, 12)] {
             buffer(&state, Look { ascii: true, colour: false, ..Look::default() }, size);
         }
+    }
+}
+
+#[test]
+fn ten_thousand_random_keys_leave_a_screen_that_lives() {
+    let mut keys: Vec<keymap::Key> =
+        keymap::bindings().iter().flat_map(|binding| binding.keys.iter().map(|(key, _)| *key)).collect();
+    keys.extend("0123456789 aλ象\u{1b}".chars().map(keymap::Key::Char));
+    let mut random = 1_u64;
+    let mut next = |below: usize| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 33) as usize % below
+    };
+    let answers: [fn() -> Answer; 4] = [sample::full, sample::partial, sample::nonsense, Answer::default];
+    for answer in answers {
+        let mut state = sample::state(answer());
+        for press in 0..2500 {
+            let key = keys[next(keys.len())];
+            for effect in keymap::action(&state, key).map(|action| update(&mut state, action)).unwrap_or_default() {
+                // The engine answers for the parameters asked for.
+                if let Effect::Send(Command::Set(settings)) = effect {
+                    let serial = state.answer.serial + 1;
+                    let answer = Answer { serial, settings, ..(*state.answer).clone() };
+                    update(&mut state, Action::Answer(Arc::new(answer)));
+                }
+            }
+            if press % 40 == 0 {
+                update(&mut state, Action::Resize(20 + next(190) as u16, 5 + next(60) as u16));
+                if answer().members.len() < 1000 && state.answer.settings == Settings::default() {
+                    state = replies::served(state);
+                }
+                buffer(&state, Look::default(), state.size);
+            }
+        }
+        // Whatever is open can be closed, and the screen left.
+        for _ in 0..3 {
+            update(&mut state, Action::Close);
+        }
+        let quit = keymap::action(&state, keymap::Key::Char('q')).map(|action| update(&mut state, action));
+        assert!(quit.is_some_and(|effects| effects.contains(&Effect::Leave(Leave::Quit))));
     }
 }
 

@@ -192,7 +192,7 @@ pub(super) fn strip_height(state: &State, width: u16, height: u16) -> u16 {
     let lines = packed(state, width).len() as u16;
     match height {
         0..8 => 1,
-        8..12 => lines.min(2),
+        8..16 => lines.min(2),
         _ => lines + 1,
     }
 }
