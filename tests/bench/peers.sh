@@ -2,15 +2,15 @@
 # This program against other eigensolvers on the same matrices: processor seconds of the solve, accuracy, peak memory.
 #
 #     tests/bench/peers.sh [--scratch DIR] [--build-slepc] [--count N]… [--choice fem|cot]… [--rounds N]
-#                          [--limit SECONDS] [--skip METHOD]… [--raw FILE] [MESH…]
+#                          [--limit SECONDS] [--slow-rounds N] [--skip METHOD]… [--raw FILE] [MESH…]
 #
 # Peers: SciPy (SuperLU) and LaPy (CHOLMOD) from PyPI; Spectra, SLEPc with PETSc's Cholesky and with MUMPS from Debian's
 # packages libspectra-dev libeigen3-dev, python3-slepc4py-real; what cannot be had is skipped and named. Debian's MUMPS
 # lacks METIS: --build-slepc builds SLEPc from PyPI besides, with the sequential MUMPS that has it (libmumps-seq-dev,
 # gfortran; 10 minutes). Everything is put into DIR, which is kept and used again, or else into a temporary folder.
 #
-# Each method runs on one thread in a process of its own, all methods in turn, N rounds; medians are told. Without a
-# mesh six procedural ones of about 10 000 vertices are made.
+# Each method runs on one thread in a process of its own, all methods in turn, N rounds (slow ones less often); medians
+# are told. Without a mesh six procedural ones of about 10 000 vertices are made.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 scratch='' build='' pass=() meshes=()
@@ -35,9 +35,10 @@ bench() {
     cargo bench --quiet --locked --no-run --bench "$1" --message-format json |
         sed -n 's/.*"kind":\["bench"\].*"executable":"\([^"]*\)".*/\1/p'
 }
-PEERS_SPECTRUM=$(bench spectrum)
-PEERS_MATRICES=$(bench matrices)
-export PEERS_SPECTRUM PEERS_MATRICES PEERS_SCRATCH=$scratch
+# Copies, so that a run is not disturbed by the next build.
+copies=$(mktemp -d -p "$scratch")
+for name in spectrum matrices; do install "$(bench $name)" "$copies/$name"; done
+export PEERS_SPECTRUM=$copies/spectrum PEERS_MATRICES=$copies/matrices PEERS_SCRATCH=$copies
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1
 
 python=$scratch/venv/bin/python
@@ -100,4 +101,7 @@ if [[ ${#meshes[@]} -eq 0 ]]; then
     fi
     mapfile -t meshes < <(find "$scratch/meshes" -name '*.obj' | sort)
 fi
-"$python" "$here/peers/drive.py" "${pass[@]}" "${meshes[@]}"
+code=0
+"$python" "$here/peers/drive.py" "${pass[@]}" "${meshes[@]}" || code=$?
+rm -rf "$copies"
+exit "$code"

@@ -86,6 +86,7 @@ def slepc(data, options):
 
 def factor(settings):
     """Options for the factorisation: `package` mumps or petsc, and the `ordering` that belongs to it."""
+    yield from ("-options_left", "no")
     yield from ("-st_type", "sinvert", "-st_ksp_type", "preonly", "-st_pc_type", "cholesky")
     yield from ("-st_pc_factor_mat_solver_type", settings["package"])
     if settings["package"] == "petsc":
