@@ -5,7 +5,10 @@ use std::sync::Arc;
 use super::{
     Action, Answered, Entry, Only, Purpose, State, Sweep, View, Why, pins, shape::Camera, update, why::Matrix,
 };
-use crate::query::{Finding, Question};
+use crate::{
+    query::{Finding, Parameter, Question},
+    study::Method,
+};
 
 /// So many steps back are remembered.
 const TRAIL: usize = 100;
@@ -80,6 +83,12 @@ fn compare(state: &mut State, action: &Action) {
         Action::Sweep => {
             state.sweep = Some(Sweep::over(state.parameter, &state.settings, state.answer.classes.len()));
             state.why.swept = true;
+            // The method that the parameter says something of.
+            state.why.method = match state.parameter {
+                Parameter::Rounds => Method::Boost,
+                Parameter::K => Method::FirstK,
+                _ => state.why.method,
+            };
             update::show(state, View::Compare);
         }
         Action::ToggleSweep => state.why.swept = !state.why.swept,
