@@ -52,14 +52,29 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// Watches what this thread holds.
+pub struct Memory(isize);
+
+impl Memory {
+    /// From now on.
+    pub fn start() -> Self {
+        Self(HELD.with(|held| {
+            let now = held.get().0;
+            held.set((now, now));
+            now
+        }))
+    }
+
+    /// The most bytes that were held at one time more than at the start.
+    pub fn most(&self) -> usize {
+        usize::try_from(HELD.with(|held| held.get().1) - self.0).unwrap_or(0)
+    }
+}
+
 /// Reads bytes in a format, and does everything with the mesh that is done with meshes; fails if that takes more memory
-/// than a small file may.
-fn digest(bytes: &[u8], format: Format) {
-    let before = HELD.with(|held| {
-        let now = held.get().0;
-        held.set((now, now));
-        now
-    });
+/// than a small file may. Says whether there is a mesh.
+pub fn digest(bytes: &[u8], format: Format) -> bool {
+    let memory = Memory::start();
     let result = read(bytes, format);
     if let Ok(mesh) = &result {
         assert!(mesh.vertices().iter().flatten().all(|value| value.is_finite()));
@@ -71,13 +86,13 @@ fn digest(bytes: &[u8], format: Format) {
         let message = error.to_string();
         assert!(message.len() < 400 && !message.contains(char::is_control), "{message:?}");
     }
-    let most = HELD.with(|held| held.get().1) - before;
-    let allowed = 100 * bytes.len() as isize + 100_000;
+    let (most, allowed) = (memory.most(), 100 * bytes.len() + 100_000);
     assert!(most < allowed, "{most} bytes for a file of {}: {result:?}", bytes.len());
+    result.is_ok()
 }
 
 /// Files that are meshes, of all formats.
-fn seeds() -> Vec<(Format, Vec<u8>)> {
+pub fn seeds() -> Vec<(Format, Vec<u8>)> {
     let mesh = tetrahedron();
     let polygons = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 1 3 0\nf 1 2 3 4\nf 1//1 2//1 3//2 5/7 -2\nl 1 2\n";
     let strips = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
@@ -97,12 +112,13 @@ fn seeds() -> Vec<(Format, Vec<u8>)> {
         (Format::Ply, strips.into()),
         (Format::Stl, write::stl_ascii(&mesh)),
         (Format::Stl, write::stl_binary(&mesh, b"solid")),
+        (Format::Xyz, "3\n0 0 0 # a\n1,0,0,255\n0;1;-2e-3\n".into()),
     ]
 }
 
 /// A change of a file.
 #[derive(Debug, Clone)]
-enum Edit {
+pub enum Edit {
     Set(prop::sample::Index, u8),
     Insert(prop::sample::Index, Vec<u8>),
     Remove(prop::sample::Index, usize),
@@ -111,7 +127,7 @@ enum Edit {
     Word(prop::sample::Index, &'static str),
 }
 
-fn edit() -> impl Strategy<Value = Edit> {
+pub fn edit() -> impl Strategy<Value = Edit> {
     let place = any::<prop::sample::Index>;
     let words = vec![
         "",
@@ -152,7 +168,7 @@ fn edit() -> impl Strategy<Value = Edit> {
     ]
 }
 
-fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
+pub fn apply(bytes: &mut Vec<u8>, edit: &Edit) {
     if bytes.is_empty() {
         return;
     }

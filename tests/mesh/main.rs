@@ -3,11 +3,14 @@
 // Helpers of tests, which clippy does not know as tests.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod fuzz;
 mod hostile;
 mod obj;
 mod off;
 mod ply;
 mod round_trip;
+#[path = "../operators/shapes.rs"]
+mod shapes;
 mod stl;
 mod survey;
 mod wild;
