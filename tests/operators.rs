@@ -268,3 +268,125 @@ fn blended_mass_is_the_mean_and_far_more_accurate_on_good_triangles() {
         assert!((0.5 * (a.3 + b.3) - c.3).abs() < 1e-16);
     }
 }
+
+fn of_sphere(count: usize) -> Vec<f64> {
+    (0..).flat_map(|l: u32| vec![f64::from(l * (l + 1)); 2 * l as usize + 1]).take(count).collect()
+}
+
+/// Points of the unit sphere that are no mesh's: on a spiral, or at random.
+fn points(count: usize, random: bool) -> Mesh {
+    let mut state = 5_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let place = |at: usize| {
+        let (height, turn) = if random {
+            (2.0 * next() - 1.0, next())
+        } else {
+            (1.0 - (2 * at + 1) as f64 / count as f64, at as f64 * 0.5 * (5_f64.sqrt() - 1.0))
+        };
+        let ((sine, cosine), radius) = ((2.0 * PI * turn).sin_cos(), (1.0 - height * height).sqrt());
+        [radius * cosine, radius * sine, height]
+    };
+    Mesh::new((0..count).map(place).collect(), Vec::new())
+}
+
+#[test]
+fn points_of_a_sphere_have_its_spectrum() {
+    let expected = of_sphere(49);
+    // The vertices of a good mesh give that mesh.
+    let mesh = icosphere(4);
+    let cloud = Mesh::new(mesh.vertices().to_vec(), Vec::new());
+    let found = spectrum(&cloud, FEM, 49);
+    assert!(found.notes[0].contains("point cloud"), "{:?}", found.notes);
+    assert!(worst(&found.eigenvalues()[..49], &values(&mesh, FEM, 49)) < 1e-10);
+    for (random, tolerance) in [(false, 0.02), (true, 0.05)] {
+        let errors = [1000, 4000].map(|count| worst(&values(&points(count, random), FEM, 49), &expected));
+        println!("random {random}: {errors:?}");
+        assert!(errors[1] < tolerance && errors[1] < 0.6 * errors[0], "random {random}: {errors:?}");
+    }
+}
+
+#[test]
+fn a_grid_of_points_covers_its_rectangle_once() {
+    // Every four of them lie on a circle. The rim of local triangulations reaches no further than the points.
+    let cloud = Mesh::new(rectangle(40, 20).vertices().to_vec(), Vec::new());
+    let found = spectrum(&cloud, FEM, 20);
+    assert!((found.measure - 2.0).abs() < 0.01, "{}", found.measure);
+    let error = worst(&found.eigenvalues()[..20], &of_rectangle(0, 20));
+    assert!(error < 0.05, "{error}");
+}
+
+#[test]
+fn what_points_cannot_have_is_said() {
+    let refused = |mesh: &Mesh, choice: Choice| match solve(mesh, choice, 5, &[], &Unwatched) {
+        Err(SpectrumError::Refused(reason)) => reason,
+        other => panic!("{other:?}"),
+    };
+    let cloud = points(100, true);
+    for triangulation in [Triangulation::Given, Triangulation::Delaunay] {
+        assert!(refused(&cloud, FEM.with_triangulation(triangulation)).contains("only 100 vertices"));
+    }
+    assert!(refused(&cloud, DIRICHLET).contains("no boundary for a Dirichlet condition"));
+    let line = Mesh::new((0..50).map(|at| [f64::from(at), 2.0 * f64::from(at), 0.0]).collect(), Vec::new());
+    assert!(refused(&line, FEM).contains("no triangles can be made of the 50 vertices"));
+    let spot = Mesh::new(vec![[1.0, 2.0, 3.0]; 50], Vec::new());
+    assert!(refused(&spot, FEM).contains("no triangles can be made of the 50 vertices"));
+}
+
+#[test]
+fn scale_and_flatness_do_not_matter() {
+    let mesh = moved(&icosphere(3), |[x, y, z]| [x, 0.8 * y + 0.1 * x * z, z]);
+    for triangulation in ALL {
+        for mass in Mass::ALL {
+            let choice = Choice { mass, ..FEM }.with_triangulation(triangulation);
+            let scaled = |mesh: &Mesh| {
+                let found = spectrum(mesh, choice, 40);
+                found.eigenvalues()[..40].iter().map(|value| value * found.measure).collect::<Vec<f64>>()
+            };
+            let expected = scaled(&mesh);
+            for factor in [1e-100, 1e-9, 3.7, 1e12, 1e100] {
+                let error = worst(&scaled(&moved(&mesh, |point| point.map(|x| factor * x))), &expected);
+                assert!(error < 1e-10, "{triangulation:?} {mass:?} {factor:e}: {error:e}");
+            }
+        }
+    }
+    // Two unit disks on one another, sewn along their rims: functions that are even across come from the Neumann
+    // spectrum of the disk, odd ones from the Dirichlet spectrum. The same with a height that nearly vanishes.
+    let pillow = |height: f64| {
+        let disk = disk(12);
+        let lens = |[x, y, _]: [f64; 3], side: f64| [x, y, side * height * (1.0 - x * x - y * y).max(0.0)];
+        let rim = disk.vertices().len() - 72;
+        let mut points: Vec<[f64; 3]> = disk.vertices().iter().map(|&point| lens(point, 1.0)).collect();
+        points.extend(disk.vertices()[..rim].iter().map(|&point| lens(point, -1.0)));
+        let below = |vertex: u32| if (vertex as usize) < rim { vertex + (rim + 72) as u32 } else { vertex };
+        let under = disk.triangles().iter().map(|&[a, b, c]| [below(a), below(c), below(b)]);
+        Mesh::new(points, disk.triangles().iter().copied().chain(under).collect())
+    };
+    let mut expected = [values(&disk(12), FEM, 30), values(&disk(12), DIRICHLET, 30)].concat();
+    expected.sort_by(f64::total_cmp);
+    for triangulation in ALL {
+        // Without height the tufted cover joins both disks: they are at one place.
+        let heights: &[f64] = if triangulation == Triangulation::Tufted { &[1e-14, 1e-9] } else { &[0.0, 1e-14, 1e-9] };
+        for &height in heights {
+            let found = values(&pillow(height), FEM.with_triangulation(triangulation), 30);
+            let error = worst(&found, &expected[..30]);
+            assert!(error < 1e-9, "{triangulation:?} {height:e}: {error:e}");
+        }
+    }
+}
+
+/// A million vertices take minutes: `cargo test --release --test operators -- --ignored`.
+#[test]
+#[ignore = "takes minutes and gigabytes"]
+fn a_million_vertices() {
+    let mesh = rectangle(1414, 707);
+    for triangulation in ALL {
+        let start = std::time::Instant::now();
+        let found = spectrum(&mesh, FEM.with_triangulation(triangulation), 20);
+        println!("{triangulation:?}: {} vertices in {:?}", found.order, start.elapsed());
+        assert!(found.order > 1_000_000);
+        assert!(worst(&found.eigenvalues()[..20], &of_rectangle(0, 20)) < 1e-4);
+    }
+}

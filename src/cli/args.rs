@@ -259,6 +259,8 @@ impl From<ReportFormat> for report::Format {
 pub(super) enum SpectrumFormat {
     /// aligned plain text
     Text,
+    /// a line for each mesh: its size, how many are certified, what was done to it
+    Summary,
     /// mesh,k,eigenvalue,error
     Csv,
     /// everything known of each spectrum

@@ -132,6 +132,7 @@ fn deliver(spectra: &Spectra, format: SpectrumFormat, out: Option<&Path>, severa
     let mut bytes = Vec::new();
     match format {
         SpectrumFormat::Text => bytes = spectra.text().into_bytes(),
+        SpectrumFormat::Summary => bytes = spectra.summary().into_bytes(),
         SpectrumFormat::Csv => spectra.write_csv(&mut bytes).map_err(failed)?,
         SpectrumFormat::Json => spectra.write_json(&mut bytes).map_err(failed)?,
         SpectrumFormat::Ev => match out {

@@ -77,8 +77,13 @@ fn triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
     for at in 0..points.len() as u32 {
         tree.nearest(points[at as usize], NEIGHBOURS + 1, &mut found);
         ring.clear();
-        ring.extend(found.iter().filter(|near| near.1 != at).map(|near| (near.1, nudged[near.1 as usize])));
-        star::star(nudged[at as usize], &ring, |b, c| triangles.push([at, b, c]));
+        let arm = |ends: &[[f64; 3]], to: u32| {
+            let (from, to) = (ends[at as usize], ends[to as usize]);
+            [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+        };
+        let others = found.iter().map(|near| near.1).filter(|&other| other != at);
+        ring.extend(others.map(|other| (other, arm(points, other), arm(&nudged, other))));
+        star::star(&ring, |b, c| triangles.push([at, b, c]));
     }
     triangles
 }

@@ -34,6 +34,8 @@ use crate::{
     spectrum::{Choice, Spectrum},
 };
 
+mod summary;
+
 /// The JSON schema's name.
 pub const SCHEMA: &str = "eigenselect-spectra";
 /// Its version.
@@ -380,7 +382,8 @@ mod tests {
     fn text_and_json_stay() {
         let mut json = Vec::new();
         spectra().write_json(&mut json).unwrap();
-        insta::assert_snapshot!(format!("{}\n{}", spectra().text(), String::from_utf8(json).unwrap()));
+        let (text, summary) = (spectra().text(), spectra().summary());
+        insta::assert_snapshot!(format!("{text}\n{summary}\n{}", String::from_utf8(json).unwrap()));
     }
 
     /// Reads as `lapy.io.read_ev` does: keys before a colon, values between braces, split at semicolons.

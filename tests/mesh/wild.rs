@@ -6,7 +6,12 @@ use std::{
     process::Command,
 };
 
-use eigenselect::mesh::{DefectKind, Format, GeometryHash, Survey, read, survey};
+use eigenselect::{
+    laplacian::{Choice, Triangulation},
+    mesh::{DefectKind, Format, GeometryHash, Survey, read, survey},
+    spectrum::{Spectrum, solve},
+    watch::Unwatched,
+};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
@@ -45,6 +50,40 @@ fn look(path: &Path) -> Result<(GeometryHash, Survey), String> {
     let bytes = fs::read(path).unwrap();
     let mesh = read(&bytes, Format::of(path).unwrap()).map_err(|error| error.to_string())?;
     Ok((mesh.hash(), survey(&mesh)))
+}
+
+fn spectrum(path: &Path, choice: Choice, count: usize) -> Spectrum {
+    let mesh = read(&fs::read(path).unwrap(), Format::of(path).unwrap()).unwrap();
+    solve(&mesh.canonical(), choice, count, &[], &Unwatched)
+        .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// 351 has 20 faces without area: one zero all the same, and nearly the eigenvalues of good triangles.
+#[test]
+fn shrec_2007_351() {
+    let Some(folder) = unpack("shrec07/meshes.tar.xz") else { return };
+    let path = files(folder.path()).into_iter().find(|path| path.ends_with("351.off")).unwrap();
+    let found = spectrum(&path, Choice::default(), 50);
+    let values = &found.eigenvalues()[..50];
+    assert!(found.zeros == 1 && values[0] == 0.0 && values[1] > 0.0);
+    assert!(found.notes.iter().any(|note| note.contains("no area")), "{:?}", found.notes);
+    let flipped = spectrum(&path, Choice::default().with_triangulation(Triangulation::Delaunay), 50).eigenvalues();
+    let worst = values[1..].iter().zip(&flipped[1..50]).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs() / b));
+    println!("351: {worst:.1e} from its intrinsic Delaunay triangulation");
+    assert!(worst < 0.01, "{worst}");
+}
+
+#[test]
+fn every_hard_mesh_has_its_spectrum() {
+    let Some(folder) = unpack("hard-meshes/libigl-tutorial.tar.xz") else { return };
+    files(folder.path()).par_iter().for_each(|path| {
+        for triangulation in Triangulation::ALL {
+            let found = spectrum(path, Choice::default().with_triangulation(triangulation), 30);
+            let values = found.eigenvalues();
+            assert!(values.len() >= 30.min(found.order), "{}", path.display());
+            assert_eq!(values.iter().filter(|value| **value == 0.0).count(), found.zeros.min(values.len()));
+        }
+    });
 }
 
 #[test]

@@ -7,16 +7,22 @@
 /// The sine below which two directions are one.
 const PARALLEL: f64 = 1e-9;
 
-/// Calls `triangle` with the two other corners of each triangle around `centre`.
-pub(super) fn star(centre: [f64; 3], ring: &[(u32, [f64; 3])], mut triangle: impl FnMut(u32, u32)) {
-    let arms: Vec<[f64; 3]> =
-        ring.iter().map(|(_, point)| [point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]]).collect();
+/// Points whose spread across is no more than this part of their spread along are on a line.
+const LINE: f64 = 1e-5;
+
+/// A neighbour: its number, the vector to it, and the one that decides which triangles there are, which may be another
+/// one by little.
+pub(super) type Neighbour = (u32, [f64; 3], [f64; 3]);
+
+/// Calls `triangle` with the two other corners of each triangle around a point; none if all lie on a line.
+pub(super) fn star(ring: &[Neighbour], mut triangle: impl FnMut(u32, u32)) {
+    let arms: Vec<[f64; 3]> = ring.iter().map(|neighbour| neighbour.1).collect();
     let Some([first, second]) = plane(&arms) else { return };
-    let flat = arms.iter().map(|&arm| [dot(arm, first), dot(arm, second)]);
+    let flat = ring.iter().map(|&(_, _, arm)| [dot(arm, first), dot(arm, second)]);
     let reach = arms.iter().map(|&arm| dot(arm, arm)).fold(0.0, f64::max);
     let mut inverted: Vec<([f64; 2], u32)> = flat
         .zip(ring)
-        .filter_map(|([x, y], &(number, _))| {
+        .filter_map(|([x, y], &(number, ..))| {
             let square = x * x + y * y;
             (square > 1e-20 * reach).then(|| ([x / square, y / square], number))
         })
@@ -54,8 +60,8 @@ fn hull(points: &mut [([f64; 2], u32)]) -> Vec<([f64; 2], u32)> {
     hull
 }
 
-/// Two orthonormal directions of the plane through the origin that fits the arms best: those that belong to the two
-/// greater eigenvalues of Σ a aᵀ. `None` where they are zero.
+/// Two orthonormal directions of the plane that fits the ends of the arms and the origin best: those that belong to the
+/// two greater eigenvalues of their covariance. `None` where they are on a line.
 fn plane(arms: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
     let mean = arms.iter().fold([0.0; 3], |sum, arm| [0, 1, 2].map(|at: usize| sum[at] + arm[at]));
     let count = (arms.len() + 1) as f64;
@@ -92,8 +98,11 @@ fn plane(arms: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
             }
         }
     }
-    let least = (0..3).min_by(|&p, &q| a[p][p].total_cmp(&a[q][q])).unwrap_or(2);
-    Some([vectors[(least + 1) % 3], vectors[(least + 2) % 3]])
+    let mut order = [0, 1, 2];
+    order.sort_by(|&p: &usize, &q: &usize| a[p][p].total_cmp(&a[q][q]));
+    let [least, middle, largest] = order;
+    (a[middle][middle] > LINE * LINE * a[largest][largest])
+        .then_some([vectors[(least + 1) % 3], vectors[(least + 2) % 3]])
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -140,9 +149,10 @@ mod tests {
             // Every other time the origin is outside of the others' hull.
             let shift = if round % 2 == 0 { 0.0 } else { 1.2 };
             let points: Vec<[f64; 2]> = (0..3 + round % 30).map(|_| [next() + shift, next()]).collect();
-            let ring: Vec<(u32, [f64; 3])> = (0..).zip(&points).map(|(at, p)| (at, [p[0], p[1], 0.0])).collect();
+            let ring: Vec<Neighbour> =
+                (0..).zip(&points).map(|(at, p)| (at, [p[0], p[1], 0.0], [p[0], p[1], 0.0])).collect();
             let mut found = Vec::new();
-            star([0.0; 3], &ring, |a, b| {
+            star(&ring, |a, b| {
                 // The plane may be seen from either side.
                 let (p, q) = (points[a as usize], points[b as usize]);
                 found.push(if p[0] * q[1] - p[1] * q[0] > 0.0 { (a, b) } else { (b, a) });
@@ -167,5 +177,6 @@ mod tests {
         }
         assert_eq!(plane(&[]), None);
         assert_eq!(plane(&[[0.0; 3]; 4]), None);
+        assert_eq!(plane(&[[1.0, 2.0, 3.0], [-1.0, -2.0, -3.0], [0.1, 0.2, 0.3]]), None);
     }
 }
