@@ -12,6 +12,7 @@
 //! | 0 | [`watch`] | how a long computation tells its progress and learns that it was cancelled |
 //! | 0 | [`figure`] | figures for print: axes, curves, marks, maps; SVG and PNG |
 //! | 0 | [`mesh`] | the triangle mesh as a value: readers, checks, content hash, the procedural shape generator |
+//! | 1 | [`remesh`] | mesh → a mesh of the same surface with a given number of even triangles |
 //! | 1 | [`laplacian`] | mesh → stiffness matrix L and mass matrix B |
 //! | 2 | [`spectrum`] | (L, B) → certified eigenvalues; normalisations |
 //! | 3 | [`metrics`] | features and labels → distances, rankings, classification error ε, ADR |
@@ -44,6 +45,7 @@ pub mod laplacian;
 pub mod mesh;
 pub mod metrics;
 pub mod query;
+pub mod remesh;
 pub mod report;
 pub mod selection;
 pub mod spectrum;

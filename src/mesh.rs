@@ -19,8 +19,10 @@ pub use self::{
 };
 
 mod canonical;
+pub(crate) mod halfedge;
 mod read;
 mod survey;
+pub(crate) mod vector;
 
 /// blake3 of a mesh's canonical geometry: equal for the same shape in any file, format and vertex order.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -93,25 +95,6 @@ impl Mesh {
             }
             (least, greatest)
         }))
-    }
-}
-
-/// Vectors of three numbers.
-mod vector {
-    pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-    }
-
-    pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    }
-
-    pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    }
-
-    pub(super) fn length(a: [f64; 3]) -> f64 {
-        dot(a, a).sqrt()
     }
 }
 

@@ -13,7 +13,6 @@
 
 mod crease;
 mod finish;
-mod halfedge;
 mod polygonise;
 mod primitive;
 mod random;

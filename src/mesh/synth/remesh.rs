@@ -4,12 +4,12 @@
 //! and Kobbelt 2004), with edge lengths that follow the curvature (Dunyach et al. 2013). Every new or moved vertex is
 //! projected onto the solid's field, so the rounds do not wear the shape down.
 
-use super::halfedge::HalfEdges;
 use super::polygonise::Surface;
 use super::random::Random;
 use super::sizing::{Tessellation, even_length, sizes};
 use super::solid::Solid;
 use super::vector::V3;
+use crate::mesh::halfedge::HalfEdges;
 
 /// Rounds after which the mesh has settled, and at most.
 const ROUNDS: (usize, usize) = (7, 16);
@@ -34,7 +34,7 @@ pub struct Remesher<'a> {
 impl<'a> Remesher<'a> {
     /// Takes the surface of `solid` as polygonised on a grid of `step`; none when it is not closed.
     pub fn new(solid: &'a Solid, surface: Surface, step: f64) -> Option<Self> {
-        let mesh = HalfEdges::new(surface)?;
+        let mesh = HalfEdges::new(surface.points, &surface.triangles)?;
         let mut normals = vec![V3::default(); mesh.vertex_slots() as usize];
         for [a, b, c] in mesh.triangles() {
             let [p, q, r] = [a, b, c].map(|x| mesh.point(x));
@@ -85,7 +85,8 @@ impl<'a> Remesher<'a> {
         self.mend();
         self.jitter(style.jitter, random);
         self.roughen(style.noise, random);
-        self.mesh.surface()
+        let (points, triangles) = self.mesh.parts(0..0);
+        Surface { points, triangles }
     }
 
     /// The point of the surface nearest `p`, about, and the normal there.
@@ -289,7 +290,7 @@ mod tests {
             assert!((surface.points.len() as f64 / count as f64 - 1.0).abs() < 0.1, "{}", surface.points.len());
             assert!(least_angle(&surface) > 15.0, "{}", least_angle(&surface));
             assert!(surface.points.iter().all(|&p| solid.distance(p).abs() < 1e-5));
-            assert_eq!(HalfEdges::new(surface).unwrap().topology(), (1, 1));
+            assert_eq!(HalfEdges::new(surface.points, &surface.triangles).unwrap().topology(), (1, 1));
         }
     }
 
@@ -306,6 +307,6 @@ mod tests {
         let surface = remeshed(&solid, &plain(600));
         let on_limb = surface.points.iter().filter(|p| p.x > 1.2).count();
         assert!(on_limb > 60, "{on_limb} vertices on the limb");
-        assert_eq!(HalfEdges::new(surface).unwrap().topology(), (1, 0));
+        assert_eq!(HalfEdges::new(surface.points, &surface.triangles).unwrap().topology(), (1, 0));
     }
 }

@@ -1,8 +1,8 @@
 //! How long edges shall be where: shorter where the surface bends more, and as the tessellation's taste will have it.
 
-use super::halfedge::HalfEdges;
 use super::random::Random;
 use super::vector::{V3, sin_cos};
+use crate::mesh::halfedge::HalfEdges;
 
 /// How one model is cut into triangles. Two models of one class differ in this too.
 #[derive(Debug, Clone)]

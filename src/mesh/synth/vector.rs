@@ -1,83 +1,13 @@
-//! Vectors, frames and the few functions of angles that the shapes need.
+//! Frames and the few functions of angles that the shapes need.
 //!
 //! Only `+ − × ÷ √` and comparisons are used, which IEEE 754 defines to the last bit. The sine of a system library
 //! differs between platforms by a unit in the last place, and the generator promises the same bytes everywhere.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
-use std::ops::{Add, Mul, Neg, Sub};
 
-/// A point or a direction in space.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct V3 {
-    pub x: f64,
-    pub y: f64,
-    pub z: f64,
-}
-
-/// Shorthand for a [`V3`].
-pub const fn v(x: f64, y: f64, z: f64) -> V3 {
-    V3 { x, y, z }
-}
-
-impl Add for V3 {
-    type Output = Self;
-    fn add(self, o: Self) -> Self {
-        v(self.x + o.x, self.y + o.y, self.z + o.z)
-    }
-}
-
-impl Sub for V3 {
-    type Output = Self;
-    fn sub(self, o: Self) -> Self {
-        v(self.x - o.x, self.y - o.y, self.z - o.z)
-    }
-}
-
-impl Mul<f64> for V3 {
-    type Output = Self;
-    fn mul(self, s: f64) -> Self {
-        v(self.x * s, self.y * s, self.z * s)
-    }
-}
-
-impl Neg for V3 {
-    type Output = Self;
-    fn neg(self) -> Self {
-        v(-self.x, -self.y, -self.z)
-    }
-}
+pub use crate::mesh::vector::{V3, v};
 
 impl V3 {
-    pub fn dot(self, o: Self) -> f64 {
-        self.x * o.x + self.y * o.y + self.z * o.z
-    }
-
-    pub fn cross(self, o: Self) -> Self {
-        v(self.y * o.z - self.z * o.y, self.z * o.x - self.x * o.z, self.x * o.y - self.y * o.x)
-    }
-
-    pub fn norm(self) -> f64 {
-        self.dot(self).sqrt()
-    }
-
-    /// The direction of `self`; the zero vector stays zero.
-    pub fn unit(self) -> Self {
-        let n = self.norm();
-        if n > 0.0 { self * (1.0 / n) } else { self }
-    }
-
-    pub fn lerp(self, o: Self, t: f64) -> Self {
-        self + (o - self) * t
-    }
-
-    pub fn min(self, o: Self) -> Self {
-        v(self.x.min(o.x), self.y.min(o.y), self.z.min(o.z))
-    }
-
-    pub fn max(self, o: Self) -> Self {
-        v(self.x.max(o.x), self.y.max(o.y), self.z.max(o.z))
-    }
-
     /// `self` turned about the unit `axis` by `angle` radians (Rodrigues' formula).
     pub fn turned(self, axis: Self, angle: f64) -> Self {
         let (s, c) = sin_cos(angle);

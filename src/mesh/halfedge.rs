@@ -1,9 +1,9 @@
 //! A closed triangle surface that can be re-meshed in place: corners, twins, and the three moves on an edge.
 //!
 //! Triangle f owns the half-edges 3f, 3f + 1, 3f + 2; each starts at `start` and has its `twin` in the neighbour.
-//! All moves keep the surface a closed oriented 2-manifold of the same genus: they refuse what would not.
+//! All moves keep the surface a closed oriented 2-manifold of the same genus: they refuse what would not. Edges can be
+//! marked; a mark goes where its edge goes.
 
-use super::polygonise::Surface;
 use super::vector::V3;
 
 /// Marks a removed half-edge or vertex.
@@ -15,6 +15,8 @@ pub struct HalfEdges {
     pub points: Vec<V3>,
     start: Vec<u32>,
     twin: Vec<u32>,
+    /// Whether the half-edge's edge is marked; both of its half-edges say so.
+    marked: Vec<bool>,
     /// A half-edge that starts at the vertex.
     out: Vec<u32>,
     live: usize,
@@ -31,28 +33,35 @@ pub const fn prev(h: u32) -> u32 {
 }
 
 impl HalfEdges {
-    /// The connectivity of a closed oriented manifold surface; none when an edge lacks its other side.
-    pub fn new(surface: Surface) -> Option<Self> {
-        let start: Vec<u32> = surface.triangles.iter().flatten().copied().collect();
-        let mut out = vec![GONE; surface.points.len()];
-        let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(start.len());
+    /// The connectivity of a closed oriented manifold surface, no edge marked; none when an edge lacks its other side.
+    pub fn new(points: Vec<V3>, triangles: &[[u32; 3]]) -> Option<Self> {
+        let start = triangles.as_flattened().to_vec();
+        let mut out = vec![GONE; points.len()];
+        // The half-edges from each vertex: those of `a` are `fan[first[a]..first[a + 1]]`.
+        let mut first = vec![0_u32; points.len() + 1];
         for (h, &a) in (0_u32..).zip(&start) {
-            let b = start[next(h) as usize];
-            edges.push((a.min(b), a.max(b), h));
             out[a as usize] = h;
+            first[a as usize + 1] += 1;
         }
-        edges.sort_unstable();
+        for a in 0..points.len() {
+            first[a + 1] += first[a];
+        }
+        let mut free = first.clone();
+        let mut fan = vec![0_u32; start.len()];
+        for (h, &a) in (0_u32..).zip(&start) {
+            fan[free[a as usize] as usize] = h;
+            free[a as usize] += 1;
+        }
         let mut twin = vec![GONE; start.len()];
-        for pair in edges.chunks(2) {
-            let &[(a, b, h), (c, d, t)] = pair else { return None };
-            if (a, b) != (c, d) || start[h as usize] == start[t as usize] {
-                return None;
-            }
-            twin[h as usize] = t;
+        for (h, &a) in (0_u32..).zip(&start) {
+            let b = start[next(h) as usize] as usize;
+            let mut back = fan[first[b] as usize..first[b + 1] as usize].iter();
+            let &t = back.find(|&&t| start[next(t) as usize] == a && twin[t as usize] == GONE)?;
             twin[t as usize] = h;
         }
         let live = out.iter().filter(|&&h| h != GONE).count();
-        Some(Self { points: surface.points, start, twin, out, live })
+        let marked = vec![false; start.len()];
+        Some(Self { points, start, twin, marked, out, live })
     }
 
     /// The number of vertices left.
@@ -88,6 +97,18 @@ impl HalfEdges {
 
     pub fn twin(&self, h: u32) -> u32 {
         self.twin[h as usize]
+    }
+
+    /// Whether the edge is marked.
+    pub fn is_marked(&self, h: u32) -> bool {
+        self.marked[h as usize]
+    }
+
+    /// Marks the edge, or takes its mark away.
+    pub fn mark(&mut self, h: u32, marked: bool) {
+        let t = self.twin(h);
+        self.marked[h as usize] = marked;
+        self.marked[t as usize] = marked;
     }
 
     /// The vertex across the edge, in the triangle of `h`.
@@ -134,9 +155,13 @@ impl HalfEdges {
         self.start.as_chunks::<3>().0.iter().copied().filter(|t| t[0] != GONE)
     }
 
+    /// Makes two half-edges one edge, which is marked if one of them was.
     fn join(&mut self, h: u32, t: u32) {
         self.twin[h as usize] = t;
         self.twin[t as usize] = h;
+        let marked = self.marked[h as usize] || self.marked[t as usize];
+        self.marked[h as usize] = marked;
+        self.marked[t as usize] = marked;
     }
 
     /// Puts a vertex at `at` on the edge of `h`, and gives its index.
@@ -154,8 +179,13 @@ impl HalfEdges {
         let g = f + 3;
         self.start.extend([m, b, c, m, a, d]);
         self.twin.extend([GONE; 6]);
+        self.marked.extend([false; 6]);
         self.start[next(h) as usize] = m;
         self.start[next(t) as usize] = m;
+        // The marks of what was (b c) and (a d) move out with the edges.
+        for (inner, outer) in [(bc, f + 1), (ad, g + 1)] {
+            self.marked[outer as usize] = std::mem::take(&mut self.marked[inner as usize]);
+        }
         self.join(h, g);
         self.join(t, f);
         self.join(bc, f + 2);
@@ -180,7 +210,8 @@ impl HalfEdges {
             && self.neighbours(c).all(|other| other != d)
     }
 
-    /// Replaces the edge by the other diagonal of its two triangles; `h` and its twin are no longer that edge.
+    /// Replaces the edge, which is not marked, by the other diagonal of its two triangles; `h` and its twin are no
+    /// longer that edge.
     pub fn flip(&mut self, h: u32) {
         let t = self.twin(h);
         let (bc, ca, ad, db) = (next(h), prev(h), next(t), prev(t));
@@ -189,6 +220,8 @@ impl HalfEdges {
         // (a b c), (b a d) → (a d c), (b c d).
         self.start[bc as usize] = d;
         self.start[ad as usize] = c;
+        self.marked[bc as usize] = false;
+        self.marked[ad as usize] = false;
         self.join(h, beyond_ad);
         self.join(t, beyond_bc);
         self.join(bc, ad);
@@ -217,9 +250,13 @@ impl HalfEdges {
         let t = self.twin(h);
         let (a, b) = (self.start(h), self.end(h));
         let (c, d) = (self.apex(h), self.apex(t));
-        let spokes: Vec<u32> = self.around(a).collect();
-        for spoke in spokes {
+        let mut spoke = h;
+        loop {
             self.start[spoke as usize] = b;
+            spoke = self.twin[prev(spoke) as usize];
+            if spoke == h {
+                break;
+            }
         }
         let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(t)), self.twin(prev(t)));
         self.join(bc, ca);
@@ -236,17 +273,17 @@ impl HalfEdges {
         self.live -= 1;
     }
 
-    /// The surface without what was removed, its vertices in their order.
-    pub fn surface(&self) -> Surface {
+    /// The vertices and triangles left, in their order, renumbered; without the vertices from `but` and their
+    /// triangles.
+    pub fn parts(&self, but: std::ops::Range<u32>) -> (Vec<V3>, Vec<[u32; 3]>) {
         let mut renamed = vec![GONE; self.out.len()];
         let mut points = Vec::with_capacity(self.live);
-        for a in 0..self.vertex_slots() {
-            if self.has_vertex(a) {
-                renamed[a as usize] = points.len() as u32;
-                points.push(self.point(a));
-            }
+        for a in (0..self.vertex_slots()).filter(|&a| self.has_vertex(a) && !but.contains(&a)) {
+            renamed[a as usize] = points.len() as u32;
+            points.push(self.point(a));
         }
-        Surface { points, triangles: self.triangles().map(|t| t.map(|a| renamed[a as usize])).collect() }
+        let triangles = self.triangles().map(|t| t.map(|a| renamed[a as usize]));
+        (points, triangles.filter(|t| !t.contains(&GONE)).collect())
     }
 
     /// Number of components and sum of their genera.
@@ -276,13 +313,25 @@ impl HalfEdges {
 
 #[cfg(test)]
 mod tests {
-    use super::super::polygonise::polygonise;
-    use super::super::primitive::Primitive;
-    use super::super::vector::{Frame, v};
+    use super::super::vector::v;
     use super::*;
 
+    /// A torus of 12 × 8 vertices, each square cut in two.
     fn ring() -> HalfEdges {
-        HalfEdges::new(polygonise(&Primitive::ring(Frame::at(v(0.0, 0.0, 0.0)), 1.0, 0.4).into(), 0.2)).unwrap()
+        let (m, n) = (12_u32, 8_u32);
+        let at = |i: u32, j: u32| (i % m) * n + j % n;
+        let mut points = Vec::new();
+        let mut triangles = Vec::new();
+        for i in 0..m {
+            for j in 0..n {
+                let (u, w) = (f64::from(i) / f64::from(m), f64::from(j) / f64::from(n));
+                let [(su, cu), (sw, cw)] = [u, w].map(|turn| (turn * std::f64::consts::TAU).sin_cos());
+                points.push(v((1.0 + 0.4 * cw) * cu, (1.0 + 0.4 * cw) * su, 0.4 * sw));
+                triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+            }
+        }
+        HalfEdges::new(points, &triangles).unwrap()
     }
 
     /// Every twin is mutual and opposite, every fan closes and holds all of the vertex's half-edges.
@@ -292,6 +341,7 @@ mod tests {
             let t = mesh.twin(h);
             assert_eq!(mesh.twin(t), h);
             assert_eq!((mesh.start(t), mesh.end(t)), (mesh.end(h), mesh.start(h)));
+            assert_eq!(mesh.is_marked(h), mesh.is_marked(t));
             assert!(mesh.has_vertex(mesh.start(h)));
             fans[mesh.start(h) as usize] += 1;
         }
@@ -301,17 +351,20 @@ mod tests {
         }
     }
 
-    #[test]
-    fn random_moves_keep_a_torus() {
-        let mut mesh = ring();
-        let mut random = super::super::random::Random::new(3, "ring", 0, 0, "moves");
+    /// Splits, flips and collapses edges at will.
+    fn shake(mesh: &mut HalfEdges) {
+        let mut state = 12_345_u64;
+        let mut below = |n: u32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % u64::from(n)) as u32
+        };
         for round in 0..4000 {
-            let h = random.below(mesh.slots() as usize) as u32;
+            let h = below(mesh.slots());
             if !mesh.has(h) {
                 continue;
             }
             let middle = mesh.point(mesh.start(h)).lerp(mesh.point(mesh.end(h)), 0.5);
-            match random.below(4) {
+            match below(4) {
                 0 if round < 2000 => {
                     mesh.split(h, middle);
                 }
@@ -320,17 +373,67 @@ mod tests {
                 _ => {}
             }
         }
+    }
+
+    #[test]
+    fn random_moves_keep_a_torus() {
+        let mut mesh = ring();
+        shake(&mut mesh);
         assert_sound(&mesh);
         assert_eq!(mesh.topology(), (1, 1));
-        assert!(mesh.vertex_count() < ring().vertex_count());
-        let again = HalfEdges::new(mesh.surface()).unwrap();
+        let (points, triangles) = mesh.parts(0..0);
+        assert_eq!(points.len(), mesh.vertex_count());
+        let again = HalfEdges::new(points, &triangles).unwrap();
         assert_sound(&again);
         assert_eq!(again.topology(), (1, 1));
     }
 
     #[test]
+    fn marks_go_where_their_edges_go() {
+        let mut mesh = ring();
+        // The circle j = 0 around the hole.
+        let circle = |a: u32| a.is_multiple_of(8);
+        for h in (0..mesh.slots()).filter(|&h| circle(mesh.start(h)) && circle(mesh.end(h))).collect::<Vec<_>>() {
+            mesh.mark(h, true);
+        }
+        for _ in 0..3 {
+            for h in 0..mesh.slots() {
+                let middle = mesh.point(mesh.start(h)).lerp(mesh.point(mesh.end(h)), 0.5);
+                match h % 5 {
+                    0 => _ = mesh.split(h, middle),
+                    1 if !mesh.is_marked(h) && mesh.can_flip(h) => mesh.flip(h),
+                    _ => {}
+                }
+            }
+        }
+        assert_sound(&mesh);
+        let marked: Vec<u32> = (0..mesh.slots()).filter(|&h| mesh.is_marked(h)).collect();
+        assert!(marked.len() > 24, "some were split: {}", marked.len());
+        // Still one closed line, each vertex with its two neighbours on it.
+        for &h in &marked {
+            assert_eq!(mesh.around(mesh.start(h)).filter(|&o| mesh.is_marked(o)).count(), 2);
+        }
+        let mut at = marked[0];
+        let mut length = 0;
+        while length == 0 || at != marked[0] {
+            let back = mesh.twin(at);
+            at = mesh.around(mesh.end(at)).find(|&o| mesh.is_marked(o) && o != back).unwrap();
+            length += 1;
+        }
+        assert_eq!(2 * length, marked.len());
+    }
+
+    #[test]
     fn open_surfaces_are_refused() {
-        let surface = Surface { points: vec![V3::default(); 3], triangles: vec![[0, 1, 2]] };
-        assert!(HalfEdges::new(surface).is_none());
+        assert!(HalfEdges::new(vec![V3::default(); 3], &[[0, 1, 2]]).is_none());
+        // Each edge has another, but in the same direction.
+        assert!(HalfEdges::new(vec![V3::default(); 3], &[[0, 1, 2], [0, 1, 2]]).is_none());
+    }
+
+    #[test]
+    fn some_vertices_can_be_left_out() {
+        let mesh = ring();
+        let (points, triangles) = mesh.parts(5..6);
+        assert_eq!((points.len(), triangles.len()), (95, 186));
     }
 }

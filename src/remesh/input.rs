@@ -1,0 +1,206 @@
+//! Mesh → half-edges, or the reason why it is no manifold.
+//!
+//! Every loop of the boundary is closed by a fan of triangles around a vertex that is not there, its ghost. The moves
+//! on edges then need to know nothing of boundaries: that two boundary vertices must not meet across the surface is
+//! that they have the ghost in common, and a loop lives as long as its ghost.
+
+use std::ops::Range;
+
+use super::RemeshError;
+use crate::{
+    mesh::{
+        Mesh,
+        halfedge::HalfEdges,
+        vector::{V3, v},
+    },
+    watch::Watch,
+};
+
+const NONE: u32 = u32::MAX;
+
+/// A mesh that can be worked on.
+pub(super) struct Input {
+    pub(super) mesh: HalfEdges,
+    /// Triangles from here on belong to ghosts.
+    pub(super) faces: u32,
+    /// The vertices that stand for the loops of the boundary.
+    pub(super) ghosts: Range<u32>,
+}
+
+/// Checks the mesh and takes it over in its canonical order.
+pub(super) fn take(mesh: &Mesh, watch: &dyn Watch) -> Result<Input, RemeshError> {
+    if mesh.vertices().iter().flatten().any(|coordinate| !coordinate.is_finite()) {
+        return Err(RemeshError::NotFinite);
+    }
+    let mesh = mesh.canonical();
+    let points: Vec<V3> = mesh.vertices().iter().map(|&[x, y, z]| v(x, y, z)).collect();
+    let mut triangles = mesh.triangles().to_vec();
+    triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    if triangles.is_empty() {
+        return Err(RemeshError::NoArea);
+    }
+    let poll = || if watch.cancelled() { Err(RemeshError::Cancelled) } else { Ok(()) };
+    poll()?;
+    let mut mates = mates(&points, &triangles)?;
+    poll()?;
+    orient(&points, &mut triangles, &mut mates)?;
+    poll()?;
+    let faces = triangles.len() as u32;
+    let ghosts = close(&points, &mut triangles, &mates)?;
+    let mut all = points;
+    all.resize(ghosts.end as usize, V3::default());
+    let degrees = degrees(all.len(), &triangles);
+    // Every edge has its two sides by now.
+    let Some(mut mesh) = HalfEdges::new(all, &triangles) else { return Err(RemeshError::NoArea) };
+    poll()?;
+    for a in (0..mesh.vertex_slots()).filter(|&a| mesh.has_vertex(a)) {
+        if mesh.degree(a) != degrees[a as usize] as usize {
+            return Err(RemeshError::Vertex { at: place(mesh.point(a)) });
+        }
+    }
+    for h in 0..mesh.slots() {
+        let t = mesh.twin(h);
+        if mesh.apex(h) == mesh.apex(t) {
+            return Err(RemeshError::Doubled { at: place(mesh.point(mesh.start(h))) });
+        }
+        if (h < 3 * faces) != (t < 3 * faces) {
+            mesh.mark(h, true);
+        }
+    }
+    Ok(Input { mesh, faces, ghosts })
+}
+
+fn place(p: V3) -> [f64; 3] {
+    [p.x, p.y, p.z]
+}
+
+fn degrees(points: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut degrees = vec![0; points];
+    for &a in triangles.as_flattened() {
+        degrees[a as usize] += 1;
+    }
+    degrees
+}
+
+/// The half-edge from corner `h` to the next of its triangle.
+fn ends(triangles: &[[u32; 3]], h: u32) -> (u32, u32) {
+    let [triangle, corner] = [h / 3, h % 3].map(|x| x as usize);
+    (triangles[triangle][corner], triangles[triangle][(corner + 1) % 3])
+}
+
+/// For each half-edge the one of the other triangle at its edge, in whatever direction; `NONE` at the boundary.
+fn mates(points: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<u32>, RemeshError> {
+    let count = 3 * triangles.len() as u32;
+    let low = |h: u32| {
+        let (a, b) = ends(triangles, h);
+        (a.min(b), a.max(b))
+    };
+    let mut first = vec![0_u32; points.len() + 1];
+    for h in 0..count {
+        first[low(h).0 as usize + 1] += 1;
+    }
+    for a in 0..points.len() {
+        first[a + 1] += first[a];
+    }
+    let mut free = first.clone();
+    let mut fan = vec![(0, 0); count as usize];
+    for h in 0..count {
+        let (a, b) = low(h);
+        fan[free[a as usize] as usize] = (b, h);
+        free[a as usize] += 1;
+    }
+    let mut mates = vec![NONE; count as usize];
+    for (a, range) in first.windows(2).enumerate() {
+        let edges = &mut fan[range[0] as usize..range[1] as usize];
+        edges.sort_unstable();
+        for edge in edges.chunk_by(|x, y| x.0 == y.0) {
+            match *edge {
+                [_] => {}
+                [(_, h), (_, t)] => {
+                    mates[h as usize] = t;
+                    mates[t as usize] = h;
+                }
+                _ => {
+                    let at = points[a].lerp(points[edge[0].0 as usize], 0.5);
+                    return Err(RemeshError::Edge { faces: edge.len(), at: place(at) });
+                }
+            }
+        }
+    }
+    Ok(mates)
+}
+
+/// Turns triangles round so that all of a component agree with its first. Of `mates`, only which are `NONE` holds
+/// after.
+fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32]) -> Result<(), RemeshError> {
+    let mut turned: Vec<Option<bool>> = vec![None; triangles.len()];
+    let mut open = Vec::new();
+    for seed in 0..triangles.len() {
+        if turned[seed].is_some() {
+            continue;
+        }
+        turned[seed] = Some(false);
+        open.push(seed as u32);
+        while let Some(face) = open.pop() {
+            let mine = turned[face as usize] == Some(true);
+            for h in 3 * face..3 * face + 3 {
+                let mate = mates[h as usize];
+                if mate == NONE {
+                    continue;
+                }
+                let (a, b) = ends(triangles, h);
+                let its = mine != (a == ends(triangles, mate).0);
+                match &mut turned[mate as usize / 3] {
+                    Some(known) if *known != its => {
+                        let at = points[a as usize].lerp(points[b as usize], 0.5);
+                        return Err(RemeshError::OneSided { at: place(at) });
+                    }
+                    Some(_) => {}
+                    unknown @ None => {
+                        *unknown = Some(its);
+                        open.push(mate / 3);
+                    }
+                }
+            }
+        }
+    }
+    for (face, turned) in turned.into_iter().enumerate() {
+        if turned == Some(true) {
+            // The edge between the two keeps its slot, the others change theirs.
+            triangles[face].swap(0, 1);
+            mates.swap(3 * face + 1, 3 * face + 2);
+        }
+    }
+    Ok(())
+}
+
+/// Adds a ghost and its triangles for every loop of the boundary; gives the ghosts.
+fn close(points: &[V3], triangles: &mut Vec<[u32; 3]>, mates: &[u32]) -> Result<Range<u32>, RemeshError> {
+    let first = points.len() as u32;
+    // The next vertex along the boundary.
+    let mut after = vec![NONE; points.len()];
+    let faces = triangles.len();
+    for face in 0..faces {
+        let [a, b, c] = triangles[face];
+        for (corner, (x, y)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
+            let free = mates[3 * face + corner] == NONE;
+            if free && std::mem::replace(&mut after[x as usize], y) != NONE {
+                return Err(RemeshError::Vertex { at: place(points[x as usize]) });
+            }
+        }
+    }
+    let mut ghost = first;
+    for seed in 0..points.len() {
+        if after[seed] == NONE {
+            continue;
+        }
+        let mut a = seed as u32;
+        while after[a as usize] != NONE {
+            let b = std::mem::replace(&mut after[a as usize], NONE);
+            triangles.push([b, a, ghost]);
+            a = b;
+        }
+        ghost += 1;
+    }
+    Ok(first..ghost)
+}

@@ -1,0 +1,251 @@
+//! The input's surface: the nearest point near by, found by walking from triangle to triangle, and the way along its
+//! creases.
+
+use crate::mesh::{
+    halfedge::{HalfEdges, next},
+    vector::V3,
+};
+
+/// The length of normals on creases: the surface has several there, so that its normals beside say more of a triangle.
+const FAINT: f64 = 0.01;
+
+/// The surface that all vertices lie on. Half-edges of its creases are marked.
+pub(super) struct Surface {
+    pub(super) mesh: HalfEdges,
+    /// Triangles from here on belong to ghosts.
+    faces: u32,
+    /// Unit normals of the vertices; zero where there is none, which is on creases.
+    normals: Vec<V3>,
+    /// The vertices where creases meet, bend or end.
+    corners: Vec<bool>,
+}
+
+/// A point of the surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    /// A half-edge of the triangle it lies in; on a crease, the crease's there.
+    pub(super) side: u32,
+    pub(super) at: V3,
+    pub(super) normal: V3,
+}
+
+/// The nearest point of one triangle.
+struct Near {
+    at: V3,
+    /// Barycentric coordinates.
+    share: [f64; 3],
+    distance2: f64,
+}
+
+impl Surface {
+    /// The surface of a mesh that has `faces` triangles and those of its ghosts after them; without creases yet.
+    pub(super) fn new(mesh: HalfEdges, faces: u32) -> Self {
+        let count = mesh.vertex_slots() as usize;
+        let mut surface = Self { mesh, faces, normals: Vec::new(), corners: vec![false; count] };
+        let mut normals = vec![V3::default(); count];
+        for face in 0..faces {
+            let normal = surface.face_normal(face);
+            for h in 3 * face..3 * face + 3 {
+                let at = &mut normals[surface.mesh.start(h) as usize];
+                *at = *at + normal;
+            }
+        }
+        surface.normals = normals.into_iter().map(V3::unit).collect();
+        surface
+    }
+
+    /// The sum of the triangles' areas.
+    pub(super) fn area(&self) -> f64 {
+        (0..self.faces).map(|face| 0.5 * self.face_normal(face).norm()).sum()
+    }
+
+    /// The normal of a triangle, as long as twice its area.
+    pub(super) fn face_normal(&self, face: u32) -> V3 {
+        let [p, q, r] = [0, 1, 2].map(|corner| self.mesh.point(self.mesh.start(3 * face + corner)));
+        (q - p).cross(r - p)
+    }
+
+    pub(super) fn is_corner(&self, a: u32) -> bool {
+        self.corners[a as usize]
+    }
+
+    /// The normal at a vertex, or a faint one on a crease.
+    pub(super) fn normal(&self, a: u32) -> V3 {
+        let normal = self.normals[a as usize];
+        if normal != V3::default() {
+            return normal;
+        }
+        let real = self.mesh.around(a).filter(|&h| self.is_real(h));
+        real.fold(V3::default(), |sum, h| sum + self.face_normal(h / 3)).unit() * FAINT
+    }
+
+    /// Takes over the marks of the mesh as creases.
+    pub(super) fn set_creases(&mut self, corners: Vec<bool>) {
+        self.corners = corners;
+        for h in 0..self.mesh.slots() {
+            if self.mesh.is_marked(h) {
+                self.normals[self.mesh.start(h) as usize] = V3::default();
+            }
+        }
+    }
+
+    pub(super) fn is_real(&self, h: u32) -> bool {
+        h < 3 * self.faces
+    }
+
+    /// The half-edge, or its twin where that one is a ghost's.
+    fn real(&self, h: u32) -> u32 {
+        if self.is_real(h) { h } else { self.mesh.twin(h) }
+    }
+
+    /// A half-edge of a real triangle from `a`.
+    pub(super) fn side_at(&self, a: u32) -> u32 {
+        self.mesh.around(a).find(|&h| self.is_real(h)).unwrap_or(0)
+    }
+
+    /// The point of the surface nearest to `p` among those that a descent from the triangle of `side` reaches.
+    pub(super) fn nearest(&self, p: V3, side: u32) -> Spot {
+        let mut face = side / 3;
+        let mut near = self.near(face, p);
+        loop {
+            let mut better = None;
+            let mut limit = near.distance2 * (1.0 - 1e-9);
+            let mut look = |h: u32| {
+                if self.is_real(h) {
+                    let other = self.near(h / 3, p);
+                    if other.distance2 < limit {
+                        limit = other.distance2;
+                        better = Some((h / 3, other));
+                    }
+                }
+            };
+            // Only triangles at the nearest point can be nearer.
+            match near.share {
+                [x, y, z] if x > 0.0 && y > 0.0 && z > 0.0 => {}
+                [_, 0.0, 0.0] => self.mesh.around(self.mesh.start(3 * face)).for_each(&mut look),
+                [0.0, _, 0.0] => self.mesh.around(self.mesh.start(3 * face + 1)).for_each(&mut look),
+                [0.0, 0.0, _] => self.mesh.around(self.mesh.start(3 * face + 2)).for_each(&mut look),
+                [_, _, 0.0] => look(self.mesh.twin(3 * face)),
+                [0.0, _, _] => look(self.mesh.twin(3 * face + 1)),
+                _ => look(self.mesh.twin(3 * face + 2)),
+            }
+            let Some(found) = better else { break };
+            (face, near) = found;
+        }
+        Spot { side: 3 * face, at: near.at, normal: self.normal_in(face, near.share) }
+    }
+
+    /// The normal within a triangle: between those of its corners; a corner on a crease has the triangle's own.
+    fn normal_in(&self, face: u32, share: [f64; 3]) -> V3 {
+        let (mut sum, mut creased) = (V3::default(), 0.0);
+        for (h, share) in (3 * face..).zip(share) {
+            let normal = self.normals[self.mesh.start(h) as usize];
+            if normal == V3::default() {
+                creased += share;
+            } else {
+                sum = sum + normal * share;
+            }
+        }
+        if creased > 0.0 {
+            sum = sum + self.face_normal(face).unit() * creased;
+        }
+        sum.unit()
+    }
+
+    /// The nearest point of a triangle (Ericson, *Real-Time Collision Detection*, 5.1.5). Of a triangle without an
+    /// area, one of its sides.
+    fn near(&self, face: u32, p: V3) -> Near {
+        let [a, b, c] = [0, 1, 2].map(|corner| self.mesh.point(self.mesh.start(3 * face + corner)));
+        let (share, at) = nearest_of_triangle(p, [a, b, c]);
+        let off = p - at;
+        Near { at, share, distance2: off.dot(off) }
+    }
+
+    /// The point nearest to `p` on the crease of `side`, among those that a descent along it reaches; it does not go
+    /// beyond corners.
+    pub(super) fn nearest_on_crease(&self, p: V3, side: u32) -> Spot {
+        let mut h = side;
+        let (mut t, mut at, mut distance2) = self.near_edge(h, p);
+        loop {
+            // Away from the end that is nearest.
+            let end = if t <= 0.0 {
+                self.mesh.start(h)
+            } else if t >= 1.0 {
+                self.mesh.end(h)
+            } else {
+                break;
+            };
+            if self.is_corner(end) {
+                break;
+            }
+            let edge = self.mesh.twin(h);
+            let Some(further) = self.mesh.around(end).find(|&o| self.mesh.is_marked(o) && o != h && o != edge) else {
+                break;
+            };
+            let (t2, at2, further2) = self.near_edge(further, p);
+            if further2 >= distance2 * (1.0 - 1e-9) {
+                break;
+            }
+            (h, t, at, distance2) = (further, t2, at2, further2);
+        }
+        let normals = [h, self.mesh.twin(h)]
+            .map(|side| if self.is_real(side) { self.face_normal(side / 3).unit() } else { V3::default() });
+        Spot { side: self.real(h), at, normal: (normals[0] + normals[1]).unit() * FAINT }
+    }
+
+    /// The creases from a vertex.
+    pub(super) fn creases_at(&self, a: u32) -> impl Iterator<Item = u32> {
+        self.mesh.around(a).filter(|&h| self.mesh.is_marked(h)).map(|h| self.real(h))
+    }
+
+    pub(super) fn is_boundary(&self, h: u32) -> bool {
+        self.is_real(h) != self.is_real(self.mesh.twin(h))
+    }
+
+    fn near_edge(&self, h: u32, p: V3) -> (f64, V3, f64) {
+        let a = self.mesh.point(self.mesh.start(h));
+        let along = self.mesh.point(self.mesh.start(next(h))) - a;
+        let length2 = along.dot(along);
+        let t = if length2 > 0.0 { ((p - a).dot(along) / length2).clamp(0.0, 1.0) } else { 0.0 };
+        let at = a + along * t;
+        let off = p - at;
+        (t, at, off.dot(off))
+    }
+}
+
+/// The barycentric coordinates and the place of the point of a triangle that is nearest to `p`.
+pub(super) fn nearest_of_triangle(p: V3, [a, b, c]: [V3; 3]) -> ([f64; 3], V3) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return ([1.0, 0.0, 0.0], a);
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return ([0.0, 1.0, 0.0], b);
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let t = d1 / (d1 - d3).max(f64::MIN_POSITIVE);
+        return ([1.0 - t, t, 0.0], a + ab * t);
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return ([0.0, 0.0, 1.0], c);
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let t = d2 / (d2 - d6).max(f64::MIN_POSITIVE);
+        return ([1.0 - t, 0.0, t], a + ac * t);
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let t = (d4 - d3) / (d4 - d3 + d5 - d6).max(f64::MIN_POSITIVE);
+        return ([0.0, 1.0 - t, t], b + (c - b) * t);
+    }
+    let scale = 1.0 / (va + vb + vc);
+    let (y, z) = (vb * scale, vc * scale);
+    ([1.0 - y - z, y, z], a + ab * y + ac * z)
+}
