@@ -2,6 +2,7 @@
 //!
 //! - `stamp`, `library`: what is costly (content hashes, facts of meshes, spectra) is a pure function of its key, kept
 //!   in memory and in the store.
+//! - `problem`: what a spectrum is of besides the mesh: re-meshed or not, and the eigenproblem.
 //! - `pool`: the threads that fill the library, outside of the database's revisions.
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.
@@ -12,6 +13,7 @@
 pub use self::{
     answer::{Answer, ModelRow, ModelState, Part, Progress, Source, Stage, StageRow},
     host::{Cancelled, Config, Host},
+    problem::Problem,
     question::{Finding, Question, Reply},
     settings::{Parameter, Settings},
     single::{Single, SingleError, Singles},
@@ -30,6 +32,7 @@ mod host;
 mod inquiry;
 mod library;
 mod pool;
+mod problem;
 mod question;
 mod reasons;
 mod rows;

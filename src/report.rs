@@ -11,7 +11,8 @@
 //! | CSV | [`mod@csv`] | pandas, R, a spreadsheet |
 //! | JSON | [`mod@json`] | programs, and checks of every figure; its schema is stable |
 //!
-//! [`spectrum`] writes the eigenvalues of single meshes, also as the `.ev` file of ShapeDNA and LaPy.
+//! [`paper`] is another document: the whole experiment of the paper, beside its published figures, with figures for
+//! print. [`spectrum`] writes the eigenvalues of single meshes, also as the `.ev` file of ShapeDNA and LaPy.
 
 use std::io;
 
@@ -25,6 +26,7 @@ mod document;
 pub mod json;
 mod layout;
 pub mod markdown;
+pub mod paper;
 mod plot;
 pub mod spectrum;
 pub mod text;

@@ -21,3 +21,13 @@ pub trait Watch: Sync {
 pub struct Unwatched;
 
 impl Watch for Unwatched {}
+
+/// Hears of a cancellation as another watch does, but keeps the progress from it: that of a part, in another unit.
+#[derive(Clone, Copy)]
+pub struct Silent<'a>(pub &'a dyn Watch);
+
+impl Watch for Silent<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}

@@ -106,6 +106,12 @@ fn each_parameter_runs_exactly_what_reads_it() {
     assert_eq!(log, with_spectra(MODELS, &LEARNING));
     // `max` changes every feature with kmax, but no spectrum.
     assert_eq!(after(&mut host, Parameter::Kmax, "25"), learning);
+    // Re-meshed models have spectra of their own, which live beside those of the models as they are.
+    assert_eq!(after(&mut host, Parameter::Remesh, "120"), with_spectra(MODELS, &LEARNING));
+    let log = after(&mut host, Parameter::Remesh, "original");
+    assert!(!log.iter().any(|q| [Content, Facts, Spectrum, Sample, FirstK, Climb, Boost].contains(q)), "{log:?}");
+    let log = after(&mut host, Parameter::Remesh, "120");
+    assert!(!log.iter().any(|q| [Content, Facts, Spectrum, Sample, FirstK, Climb, Boost].contains(q)), "{log:?}");
 }
 
 #[test]

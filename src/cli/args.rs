@@ -4,13 +4,16 @@ use std::{path::PathBuf, time::Duration};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use self::values::{age, count, size, vertices};
 use super::{doctor::DoctorArguments, papers::CompletionsArguments};
 use crate::{
     laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     mesh::synth::class_names,
-    query::{Parameter, Settings},
+    query::{Parameter, Problem, Settings},
     report,
 };
+
+mod values;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -107,6 +110,10 @@ pub(super) struct ReportArguments {
     /// The folder of labelled meshes
     #[arg(value_name = "DATA")]
     pub(super) data: PathBuf,
+    /// Which study: that of the parameters, or the whole experiment of the paper on its eight spectra, written to the
+    /// folder of --out as Markdown, CSV, JSON, SVG and PNG
+    #[arg(long, value_enum, default_value = "one")]
+    pub(super) study: StudyName,
     /// How to write it [default: by the ending of --out, else text]
     #[arg(long, value_enum)]
     pub(super) format: Option<ReportFormat>,
@@ -117,7 +124,16 @@ pub(super) struct ReportArguments {
     #[arg(long)]
     pub(super) spectra: bool,
     #[command(flatten)]
-    pub(super) study: StudyArguments,
+    pub(super) arguments: StudyArguments,
+}
+
+/// What a report is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum StudyName {
+    /// The study of the parameters
+    One,
+    /// The whole experiment of the paper
+    Paper,
 }
 
 /// `tui spectrum`.
@@ -130,6 +146,9 @@ pub(super) struct SpectrumArguments {
     /// How many eigenvalues, the zeros included
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = count)]
     pub(super) count: usize,
+    /// Re-mesh to so many vertices first
+    #[arg(long, value_name = "N", value_parser = vertices)]
+    pub(super) remesh: Option<usize>,
     /// The eigenproblem: finite elements (L f = λ B f), or cotangent weights alone (L f = λ f)
     #[arg(long, value_enum, default_value = "fem")]
     pub(super) operator: OperatorName,
@@ -345,11 +364,12 @@ impl From<TriangulationName> for Triangulation {
 }
 
 impl SpectrumArguments {
-    /// The eigenproblem.
-    pub(super) fn choice(&self) -> Choice {
-        Choice::new(self.operator.into(), self.mass.into())
+    /// What the spectra are of, besides the meshes.
+    pub(super) fn problem(&self) -> Problem {
+        let choice = Choice::new(self.operator.into(), self.mass.into())
             .with_boundary(self.boundary.into())
-            .with_triangulation(self.triangulation.into())
+            .with_triangulation(self.triangulation.into());
+        Problem { remesh: self.remesh, choice }
     }
 }
 
@@ -371,45 +391,6 @@ fn setting(text: &str) -> Result<Setting, String> {
         Settings::default().set(parameter, value, 1)?;
     }
     Ok(Setting { parameter, value: value.trim().to_owned() })
-}
-
-fn count(text: &str) -> Result<usize, String> {
-    text.parse().ok().filter(|&count| count >= 1).ok_or_else(|| "a number from 1 is needed".to_owned())
-}
-
-/// `500M` and the like, in powers of 1024.
-fn size(text: &str) -> Result<u64, String> {
-    let text = text.trim().trim_end_matches(['b', 'B']).trim_end_matches(['i', 'I']);
-    let unit = |letter: char| match letter.to_ascii_uppercase() {
-        'K' => Some(1_u64 << 10),
-        'M' => Some(1 << 20),
-        'G' => Some(1 << 30),
-        'T' => Some(1 << 40),
-        _ => None,
-    };
-    let (number, unit) = match text.chars().next_back().and_then(unit) {
-        Some(unit) => (&text[..text.len() - 1], unit),
-        None => (text, 1),
-    };
-    let number = number.trim().parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
-    number.map(|number| (number * unit as f64) as u64).ok_or_else(|| "a size looks like 800M or 2G".to_owned())
-}
-
-/// `12h`, `30d`, `4w`.
-fn age(text: &str) -> Result<Duration, String> {
-    let text = text.trim();
-    let hours = match text.chars().next_back() {
-        Some('h') => 1,
-        Some('d') => 24,
-        Some('w') => 24 * 7,
-        _ => 0,
-    };
-    let number = text.get(..text.len().saturating_sub(1)).and_then(|number| number.trim().parse::<u64>().ok());
-    number
-        .filter(|_| hours > 0)
-        .and_then(|number| number.checked_mul(hours * 3600))
-        .map(Duration::from_secs)
-        .ok_or_else(|| "a time looks like 12h, 30d or 4w".to_owned())
 }
 
 const SPECTRUM_NOTES: &str = "\

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    args::{ReportArguments, ReportFormat, StudyArguments},
+    args::{ReportArguments, ReportFormat, StudyArguments, StudyName},
     exit::{Exit, Failure, complain},
     interrupt::Interrupt,
     output,
@@ -15,7 +15,10 @@ use super::{
 };
 use crate::{
     query::Host,
-    report::{Document, Format, Origin, csv},
+    report::{
+        Document, Format, Origin, csv,
+        paper::{self, Paper, PaperError},
+    },
 };
 
 /// What the report is and where it goes.
@@ -27,6 +30,9 @@ struct Target {
 
 /// Runs `tui report`.
 pub(super) fn run(arguments: &ReportArguments) -> Result<Exit, Failure> {
+    if arguments.study == StudyName::Paper {
+        return paper(arguments);
+    }
     let out = arguments.out.as_deref();
     let format = arguments.format.or_else(|| out.and_then(format_of)).unwrap_or(ReportFormat::Text);
     if arguments.spectra && matches!(format, ReportFormat::Text | ReportFormat::Md) {
@@ -39,7 +45,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<Exit, Failure> {
         }
     }
     let target = Target { format, out: arguments.out.clone(), spectra: arguments.spectra };
-    write(&arguments.data, &arguments.study, &target)
+    write(&arguments.data, &arguments.arguments, &target)
 }
 
 /// Prints the text report: what `tui DIR` does where there is no terminal.
@@ -78,6 +84,37 @@ fn write(root: &Path, arguments: &StudyArguments, target: &Target) -> Result<Exi
     if document.tables.is_empty() {
         return Err(Failure::Failed(format!("{}: {}", root.display(), why_no_study(&document))));
     }
+    Ok(Exit::Done)
+}
+
+/// `--study paper`: a folder of files.
+fn paper(arguments: &ReportArguments) -> Result<Exit, Failure> {
+    let Some(folder) = &arguments.out else {
+        return Err(Failure::Usage("--study paper needs --out, the folder to write to".to_owned()));
+    };
+    if arguments.format.is_some() || arguments.spectra {
+        return Err(Failure::Usage("--study paper has its own formats: neither --format nor --spectra".to_owned()));
+    }
+    output::check(folder)?;
+    if folder.is_file() {
+        return Err(Failure::Failed(format!("{}: a file, where a folder was expected", folder.display())));
+    }
+    let interrupt = Interrupt::listen().map_err(|error| Failure::caused("Ctrl-C cannot be listened to", error))?;
+    let study = Study::open(&arguments.data, &arguments.arguments)?;
+    let (settings, threads) = (study.settings.clone(), study.threads);
+    let cache = study.store.dir().display().to_string();
+    let mut host = Host::new(study.into_config());
+    let found = {
+        let watch = Progress::new("spectra", "spectra; selecting eigenvalues", interrupt);
+        paper::collect(&mut host, &settings, threads, &watch)
+    };
+    let found = found.map_err(|error| match error {
+        PaperError::Cancelled(_) => Failure::Interrupted(format!("{error}; finished spectra are kept in {cache}")),
+        PaperError::Study { .. } => Failure::Failed(format!("{}: {error}", arguments.data.display())),
+    })?;
+    let document = Paper::new(&host, &arguments.data.display().to_string(), found);
+    let files = document.files().map_err(|error| Failure::caused("the document cannot be written", error))?;
+    output::save_all(folder, &files)?;
     Ok(Exit::Done)
 }
 

@@ -17,11 +17,10 @@ use super::{
     study,
 };
 use crate::{
-    query::{Single, SingleError, Singles},
+    query::{Problem, Single, SingleError, Singles},
     report::spectrum::{Failed, MeshSpectrum, Spectra, ev},
-    spectrum::Choice,
     store,
-    watch::Watch,
+    watch::{Silent, Watch},
 };
 
 /// Runs `tui spectrum`.
@@ -42,15 +41,15 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     let store =
         (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], arguments.cache.as_deref())));
     let singles = Singles::new(store.clone());
-    let choice = arguments.choice();
-    let solved = solve(&singles, arguments, choice, interrupt)?;
+    let problem = arguments.problem();
+    let solved = solve(&singles, arguments, problem, interrupt)?;
 
     let mut spectra = Spectra::new();
     for (path, solved) in arguments.meshes.iter().zip(solved) {
         let file = path.display().to_string();
         match solved {
             Ok(Single { geometry, survey, spectrum, source, seconds }) => {
-                let spectrum = MeshSpectrum::new(file, geometry, &survey, choice, &spectrum, arguments.count);
+                let spectrum = MeshSpectrum::new(file, geometry, &survey, problem.choice, &spectrum, arguments.count);
                 if spectrum.eigenvalues.len() < arguments.count {
                     complain(&format!(
                         "{}: the mesh has {} eigenvalues, fewer than the {} asked for",
@@ -81,7 +80,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
 fn solve(
     singles: &Singles,
     arguments: &SpectrumArguments,
-    choice: Choice,
+    problem: Problem,
     interrupt: Interrupt,
 ) -> Result<Vec<Result<Single, SingleError>>, Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
@@ -91,7 +90,7 @@ fn solve(
     let count = arguments.count;
     if let [mesh] = &arguments.meshes[..] {
         let watch = Progress::new("eigenvalues", "eigenvalues", interrupt);
-        return Ok(vec![pool.install(|| singles.solve(mesh, choice, count, &watch))]);
+        return Ok(vec![pool.install(|| singles.solve(mesh, problem, count, &watch))]);
     }
     let watch = Progress::new("meshes", "meshes", interrupt);
     let (done, total) = (AtomicUsize::new(0), arguments.meshes.len());
@@ -101,21 +100,12 @@ fn solve(
             if watch.cancelled() {
                 return Err(SingleError::Cancelled);
             }
-            let solved = singles.solve(mesh, choice, count, &Quiet(&watch));
+            let solved = singles.solve(mesh, problem, count, &Silent(&watch));
             watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
             solved
         };
         arguments.meshes.par_iter().map(solve).collect()
     }))
-}
-
-/// Passes on that a solve is cancelled, but not its progress: the bar counts meshes.
-struct Quiet<'a>(&'a Progress);
-
-impl Watch for Quiet<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.cancelled()
-    }
 }
 
 /// The cache: the one that is named; else that of the data set the mesh belongs to, which is one to three folders up;

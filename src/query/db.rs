@@ -12,7 +12,7 @@ use std::{
 };
 
 use super::{
-    Stage,
+    Problem, Stage,
     library::{Facts, Failure, FileAt, Library, Missing},
     stamp::{ContentHash, Stamp},
     trace::{Query, Trace},
@@ -22,7 +22,7 @@ use crate::{
     mesh::Format,
     metrics::{Distance, Features},
     selection::{self, Climb, Cost, SelCount, Strong},
-    spectrum::{Choice, Normalisation, Spectrum},
+    spectrum::{Normalisation, Spectrum},
     study::{self, FirstK, Sample},
     watch::Watch,
 };
@@ -108,7 +108,7 @@ pub(crate) struct ModelFile {
 #[derive(Debug)]
 pub(crate) struct Knobs {
     #[returns(copy)]
-    pub(crate) choice: Choice,
+    pub(crate) problem: Problem,
     #[returns(copy)]
     pub(crate) kmax: usize,
     #[returns(copy)]
@@ -146,7 +146,7 @@ pub(crate) struct SpectrumKey<'db> {
     #[returns(copy)]
     pub(crate) file: ModelFile,
     #[returns(copy)]
-    pub(crate) choice: Choice,
+    pub(crate) problem: Problem,
     #[returns(copy)]
     pub(crate) count: usize,
 }
@@ -158,7 +158,7 @@ pub(crate) struct SampleKey<'db> {
     #[returns(copy)]
     pub(crate) cohort: Cohort<'db>,
     #[returns(copy)]
-    pub(crate) choice: Choice,
+    pub(crate) problem: Problem,
     #[returns(copy)]
     pub(crate) normalisation: Normalisation,
     /// How many features each model has.
@@ -237,7 +237,7 @@ pub(crate) fn spectrum<'db>(db: &'db dyn Db, key: SpectrumKey<'db>) -> Result<Ar
     let file = key.file(db);
     let found = facts(db, file).and_then(|facts| {
         let file = file_at(db, file)?;
-        match db.library().spectrum(file, &facts, key.choice(db), key.count(db), db.revoked()) {
+        match db.library().spectrum(file, &facts, key.problem(db), key.count(db), db.revoked()) {
             Ok(found) => Ok(found.spectrum),
             Err(Missing::Failed(reason) | Missing::Unread(reason)) => Err(reason),
             Err(Missing::Cancelled) => leave(db),
@@ -252,7 +252,7 @@ pub(crate) fn spectrum<'db>(db: &'db dyn Db, key: SpectrumKey<'db>) -> Result<Ar
 pub(crate) fn sample<'db>(db: &'db dyn Db, key: SampleKey<'db>) -> Result<Arc<Sample>, Failure> {
     let cohort = key.cohort(db);
     let spectra = cohort.members(db).iter().map(|&file| {
-        let key = SpectrumKey::new(db, file, key.choice(db), cohort.reach(db));
+        let key = SpectrumKey::new(db, file, key.problem(db), cohort.reach(db));
         // The others' spectra are there; this one's reason must say whose it is.
         let named = |reason| Failure::from(format!("{}: {reason}", file.path(db).display()));
         spectrum(db, key).map(|spectrum| (file, spectrum)).map_err(named)

@@ -135,7 +135,7 @@ impl Host {
         let classes = Arc::new(data.classes.clone());
         Knobs::new(
             &database,
-            settings.choice(),
+            settings.problem(),
             settings.kmax,
             settings.normalisation,
             settings.distance,
@@ -206,8 +206,8 @@ impl Host {
         self.database.write(|db| {
             let knobs = Knobs::get(db);
             // Setters do not compare, and an input that is set to its own value still runs all that reads it.
-            if old.choice() != new.choice() {
-                knobs.set_choice(db).to(new.choice());
+            if old.problem() != new.problem() {
+                knobs.set_problem(db).to(new.problem());
             }
             if old.kmax != new.kmax {
                 knobs.set_kmax(db).to(new.kmax);
@@ -228,14 +228,14 @@ impl Host {
                 knobs.set_sel(db).to(new.sel);
             }
         });
-        let choice = self.settings.choice();
-        if choice != old.choice() {
+        let problem = self.settings.problem();
+        if problem != old.problem() {
             for row in &mut self.rows {
                 row.found = None;
                 row.working = None;
             }
         }
-        if choice != old.choice() || self.settings.kmax != old.kmax {
+        if problem != old.problem() || self.settings.kmax != old.kmax {
             self.want();
         }
         self.shown.outdate();
@@ -310,13 +310,13 @@ impl Host {
 
     /// Tells the pool what is wanted now.
     fn want(&mut self) {
-        let (choice, count) = (self.settings.choice(), self.settings.kmax);
+        let (problem, count) = (self.settings.problem(), self.settings.kmax);
         let mut within = HashMap::<u32, usize>::new();
         let mut jobs = Vec::with_capacity(self.rows.len());
         for (slot, (row, model)) in self.rows.iter_mut().zip(&self.data.models).enumerate() {
             let Some(format) = Format::of(&model.path) else { continue };
             let stamp = row.file.stamp(&self.database);
-            let job = Job { path: model.path.clone(), format, stamp, choice, count };
+            let job = Job { path: model.path.clone(), format, stamp, problem, count };
             row.job = Some(job.clone());
             let turn = within.entry(model.class).or_default();
             jobs.push((*turn, slot, job));

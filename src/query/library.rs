@@ -13,15 +13,16 @@ use std::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Source, Stage,
+    Problem, Source, Stage,
     stamp::{ContentHash, Stamp},
     trace::Trace,
 };
 use crate::{
     mesh::{self, Format, GeometryHash, Mesh, Survey},
-    spectrum::{self, Band, Choice, Spectrum, SpectrumError},
+    remesh::RemeshError,
+    spectrum::{self, Band, Spectrum, SpectrumError},
     store::{Key, Store},
-    watch::Watch,
+    watch::{Unwatched, Watch},
 };
 
 /// Why a model takes no part, in one line.
@@ -73,12 +74,12 @@ struct Memory {
     /// The same for files whose stamps are too fresh to be told from later ones: until the next look at the folder.
     fresh: HashMap<PathBuf, (Stamp, ContentHash)>,
     facts: HashMap<(ContentHash, Format), Result<Arc<Facts>, Failure>>,
-    spectra: HashMap<(GeometryHash, Choice), Found>,
-    refused: HashMap<(GeometryHash, Choice), Failure>,
+    spectra: HashMap<(GeometryHash, Problem), Found>,
+    refused: HashMap<(GeometryHash, Problem), Failure>,
     /// Spectra being solved now, so that two files of one shape are one solve.
-    solving: HashSet<(GeometryHash, Choice)>,
+    solving: HashSet<(GeometryHash, Problem)>,
     /// Bands of solves that were cancelled.
-    begun: HashMap<(GeometryHash, Choice), Vec<Band>>,
+    begun: HashMap<(GeometryHash, Problem), Vec<Band>>,
     contents_unsaved: bool,
 }
 
@@ -194,14 +195,14 @@ impl Library {
         &self,
         file: FileAt<'_>,
         facts: &Facts,
-        choice: Choice,
+        problem: Problem,
         count: usize,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
         if let Some(refusal) = facts.survey.refusal() {
             return Err(Missing::Failed(refusal.into()));
         }
-        let name = (facts.geometry, choice);
+        let name = (facts.geometry, problem);
         if let Some(known) = self.claim(name, count, watch)? {
             return Ok(known);
         }
@@ -212,7 +213,7 @@ impl Library {
     }
 
     /// The spectrum from memory, or none and the right to make it. Waits while another thread makes it.
-    fn claim(&self, name: (GeometryHash, Choice), count: usize, watch: &dyn Watch) -> Result<Option<Found>, Missing> {
+    fn claim(&self, name: (GeometryHash, Problem), count: usize, watch: &dyn Watch) -> Result<Option<Found>, Missing> {
         let mut memory = self.memory();
         loop {
             if let Some(found) = memory.spectra.get(&name).filter(|found| suffices(&found.spectrum, count)) {
@@ -236,16 +237,13 @@ impl Library {
     fn find(
         &self,
         file: FileAt<'_>,
-        name: (GeometryHash, Choice),
+        name: (GeometryHash, Problem),
         count: usize,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
         let start = Instant::now();
-        let (geometry, choice) = name;
-        let key_of = |kind| {
-            let key = Key::new(kind).number(u64::from(spectrum::KERNEL)).field(&geometry.0);
-            choice.numbers().into_iter().fold(key, Key::number)
-        };
+        let (geometry, problem) = name;
+        let key_of = |kind| problem.key(Key::new(kind).number(u64::from(spectrum::KERNEL)).field(&geometry.0));
         let key = key_of("spectrum");
         let stored = self.0.store.get::<Spectrum>(&key);
         if let Some(spectrum) = stored.as_ref().filter(|spectrum| suffices(spectrum, count)) {
@@ -256,9 +254,14 @@ impl Library {
         }
         let begun_key = key_of("begun");
         let known = self.known_bands(name, stored, &begun_key);
-        let mesh = load(file)?;
-        match spectrum::solve(&mesh.canonical(), choice, count, &known, watch) {
-            Ok(spectrum) => {
+        let mesh = match problem.prepare(&load(file)?, watch) {
+            Ok(mesh) => mesh,
+            Err(RemeshError::Cancelled) => return Err(Missing::Cancelled),
+            Err(error) => return Err(self.refuse(name, &error)),
+        };
+        match spectrum::solve(&mesh, problem.choice, count, &known, watch) {
+            Ok(mut spectrum) => {
+                spectrum.notes.splice(0..0, problem.note());
                 self.0.store.update::<Spectrum>(&key, |stored| {
                     let longer = stored.as_ref().is_none_or(|stored| stored.count() < spectrum.count());
                     longer.then(|| spectrum.clone())
@@ -279,16 +282,19 @@ impl Library {
                 self.memory().begun.insert(name, finished);
                 Err(Missing::Cancelled)
             }
-            Err(error) => {
-                let reason: Failure = error.to_string().into();
-                self.memory().refused.insert(name, reason.clone());
-                Err(Missing::Failed(reason))
-            }
+            Err(error) => Err(self.refuse(name, &error)),
         }
     }
 
+    /// Remembers that there is no such spectrum.
+    fn refuse(&self, name: (GeometryHash, Problem), error: &dyn ToString) -> Missing {
+        let reason: Failure = error.to_string().into();
+        self.memory().refused.insert(name, reason.clone());
+        Missing::Failed(reason)
+    }
+
     /// The bands that are there already, of a shorter spectrum or of a solve that was cancelled.
-    fn known_bands(&self, name: (GeometryHash, Choice), stored: Option<Spectrum>, begun: &Key) -> Vec<Band> {
+    fn known_bands(&self, name: (GeometryHash, Problem), stored: Option<Spectrum>, begun: &Key) -> Vec<Band> {
         let memory = self.memory();
         let shorter = memory.spectra.get(&name).map(|found| found.spectrum.bands.clone());
         let in_memory = memory.begun.get(&name).cloned();
@@ -330,9 +336,10 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|error| format!("cannot be read: {error}").into())
 }
 
-/// The mesh in `file`, in its canonical form. It is not kept.
-pub(crate) fn canonical(file: FileAt<'_>) -> Result<Mesh, Failure> {
-    load(file).map(|mesh| mesh.canonical()).map_err(|failure| failure.reason)
+/// The mesh that a problem on the mesh in `file` is on, in its canonical form. It is not kept.
+pub(crate) fn prepared(file: FileAt<'_>, problem: Problem) -> Result<Mesh, Failure> {
+    let mesh = load(file).map_err(|failure| failure.reason)?;
+    problem.prepare(&mesh, &Unwatched).map_err(|error| error.to_string().into())
 }
 
 /// Reads the mesh, and makes sure that it is still the one meant.
@@ -352,6 +359,7 @@ mod tests {
     use crate::{
         laplacian::{Mass, Operator},
         mesh::synth,
+        spectrum::Choice,
         store,
     };
 
@@ -385,14 +393,14 @@ mod tests {
             let content = library.content(&path, Stamp::of(&path).unwrap()).unwrap();
             let file = FileAt { path: &path, format: Format::Obj, content };
             let facts = library.facts(file).unwrap();
-            library.spectrum(file, &facts, choice, count, watch)
+            library.spectrum(file, &facts, choice.into(), count, watch)
         };
         assert!(matches!(ask(&open(), &AfterSome::default()), Err(Missing::Cancelled)));
         let begun = store::stats(&folder.path().join("cache")).unwrap();
         assert!(begun.kinds.iter().any(|kind| kind.kind == "begun" && kind.tally.files == 1), "{begun:?}");
-        let resumed = ask(&open(), &crate::watch::Unwatched).unwrap();
-        let direct = spectrum::solve(&mesh.canonical(), choice, count, &[], &crate::watch::Unwatched).unwrap();
+        let resumed = ask(&open(), &Unwatched).unwrap();
+        let direct = spectrum::solve(&mesh.canonical(), choice, count, &[], &Unwatched).unwrap();
         assert_eq!(resumed.spectrum.eigenvalues(), direct.eigenvalues());
-        assert!(matches!(ask(&open(), &crate::watch::Unwatched), Ok(Found { source: Source::Disk, .. })));
+        assert!(matches!(ask(&open(), &Unwatched), Ok(Found { source: Source::Disk, .. })));
     }
 }

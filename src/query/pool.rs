@@ -16,11 +16,11 @@ use std::{
 };
 
 use super::{
-    Stage,
+    Problem, Stage,
     library::{Facts, Failure, FileAt, Found, Library, Missing},
     stamp::Stamp,
 };
-use crate::{mesh::Format, spectrum::Choice, watch::Watch};
+use crate::{mesh::Format, watch::Watch};
 
 /// One model's spectrum, from its file.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,7 +28,7 @@ pub(crate) struct Job {
     pub(crate) path: PathBuf,
     pub(crate) format: Format,
     pub(crate) stamp: Option<Stamp>,
-    pub(crate) choice: Choice,
+    pub(crate) problem: Problem,
     pub(crate) count: usize,
 }
 
@@ -191,7 +191,7 @@ fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts
     let known = shared.library.facts(file).map_err(|failure| (Stage::Survey, failure.into()))?;
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));
-    shared.library.spectrum(file, &known, job.choice, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))
+    shared.library.spectrum(file, &known, job.problem, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))
 }
 
 /// Watches one job.

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    Settings,
+    Problem, Settings,
     db::{Cohort, Database, ModelFile},
     examined,
     inquiry::Members,
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     dataset::Role,
     mesh::{Format, Mesh},
-    spectrum::{self, Choice},
+    spectrum,
     study::{
         Honest, Method, Retrieved,
         why::{Decisions, Neighbours, Shared, Votes},
@@ -152,7 +152,7 @@ pub(crate) struct Looking {
     pub(crate) library: Library,
     pub(crate) file: ModelAt,
     pub(crate) settings: Settings,
-    pub(crate) choice: Choice,
+    pub(crate) problem: Problem,
     /// Of a shape, or of a function on it.
     pub(crate) question: Question,
 }
@@ -181,7 +181,7 @@ impl Looking {
         let ModelAt { path, format, stamp } = &self.file;
         let stamp = stamp.ok_or_else(|| Failure::from("the file is not there"))?;
         let file = FileAt { path, format: *format, content: self.library.content(path, stamp)? };
-        let mesh = library::canonical(file)?;
+        let mesh = library::prepared(file, self.problem)?;
         let Question::Function { index, .. } = self.question else { return Ok(Finding::Shape(Arc::new(mesh))) };
         let missing = |missing: Missing| match missing {
             Missing::Failed(reason) | Missing::Unread(reason) => reason,
@@ -189,10 +189,10 @@ impl Looking {
         };
         let facts = self.library.facts(file).map_err(|unread| unread.reason)?;
         let count = self.settings.kmax.max(index);
-        let found = self.library.spectrum(file, &facts, self.choice, count, &Unwatched).map_err(missing)?;
+        let found = self.library.spectrum(file, &facts, self.problem, count, &Unwatched).map_err(missing)?;
         let place = index.checked_sub(1).filter(|&place| place < found.spectrum.count());
         let place = place.ok_or_else(|| Failure::from(format!("the model has no eigenvalue {index}")))?;
-        let vectors = spectrum::eigenvectors(&mesh, self.choice, &found.spectrum, &[place], &Unwatched);
+        let vectors = spectrum::eigenvectors(&mesh, self.problem.choice, &found.spectrum, &[place], &Unwatched);
         let vectors = vectors.map_err(|error| Failure::from(error.to_string()))?;
         let first = vectors.into_iter().next().ok_or_else(|| Failure::from("no eigenfunction was found"))?;
         Ok(Finding::Function(Arc::new(first.values)))

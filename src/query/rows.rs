@@ -30,7 +30,7 @@ pub(super) fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> 
 
 pub(super) fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
     let knobs = Knobs::get(db);
-    SampleKey::new(db, cohort, knobs.choice(db), knobs.normalisation(db), width)
+    SampleKey::new(db, cohort, knobs.problem(db), knobs.normalisation(db), width)
 }
 
 /// The first-k curves up to kmax.

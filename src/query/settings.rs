@@ -2,21 +2,27 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Problem;
 use crate::{
     laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     metrics::Distance,
+    remesh,
     selection::{Cost, SelCount},
     spectrum::Normalisation,
 };
 
 /// Greatest kmax and k that can be asked for.
 const KMAX_MAX: usize = 5000;
+/// The value of `remesh` that leaves the models as they are.
+const ORIGINAL: &str = "original";
 /// Greatest number of rounds.
 const ROUNDS_MAX: usize = 1000;
 
 /// One value for each parameter.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Settings {
+    /// Re-mesh every model to so many vertices first; none for the models as they are.
+    pub remesh: Option<usize>,
     /// Which eigenproblem.
     pub operator: Operator,
     /// Which mass matrix.
@@ -46,6 +52,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            remesh: None,
             operator: Operator::Fem,
             mass: Mass::Consistent,
             boundary: Boundary::Neumann,
@@ -65,6 +72,8 @@ impl Default for Settings {
 /// Names a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Parameter {
+    /// [`Settings::remesh`].
+    Remesh,
     /// [`Settings::operator`].
     Operator,
     /// [`Settings::mass`].
@@ -93,7 +102,8 @@ pub enum Parameter {
 
 impl Parameter {
     /// All of them, in the order in which they are shown.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
+        Self::Remesh,
         Self::Operator,
         Self::Mass,
         Self::Boundary,
@@ -112,6 +122,7 @@ impl Parameter {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Remesh => "remesh",
             Self::Operator => "operator",
             Self::Mass => "mass",
             Self::Boundary => "boundary",
@@ -131,6 +142,7 @@ impl Parameter {
     #[must_use]
     pub const fn about(self) -> &'static str {
         match self {
+            Self::Remesh => "vertices that every model is re-meshed to, or original",
             Self::Operator => "eigenproblem: fem (L f = λ B f) or cot (L f = λ f)",
             Self::Mass => "mass matrix of fem: consistent, lumped, or blended (their mean)",
             Self::Boundary => "condition at open edges: neumann (no slope) or dirichlet (zero)",
@@ -158,7 +170,7 @@ impl Parameter {
             Self::Distance => &["l2", "l1", "chi2"],
             Self::Cost => &["error", "adr"],
             Self::Sel => &["chosen", "ties"],
-            Self::Kmax | Self::K | Self::Rounds | Self::Class => &[],
+            Self::Remesh | Self::Kmax | Self::K | Self::Rounds | Self::Class => &[],
         }
     }
 
@@ -166,6 +178,7 @@ impl Parameter {
     #[must_use]
     pub const fn range(self, classes: usize) -> (usize, usize) {
         match self {
+            Self::Remesh => (*remesh::VERTICES.start(), *remesh::VERTICES.end()),
             Self::Kmax | Self::K => (1, KMAX_MAX),
             Self::Rounds => (1, ROUNDS_MAX),
             Self::Class => (1, if classes == 0 { 1 } else { classes }),
@@ -187,6 +200,12 @@ impl Settings {
         Choice::new(self.operator, self.mass).with_boundary(self.boundary).with_triangulation(self.triangulation)
     }
 
+    /// What the spectra are of, besides the meshes.
+    #[must_use]
+    pub const fn problem(&self) -> Problem {
+        Problem { remesh: self.remesh, choice: self.choice() }
+    }
+
     /// The value of a parameter as text: what [`Settings::set`] takes. Classes count from 1.
     #[must_use]
     pub fn get(&self, parameter: Parameter) -> String {
@@ -200,6 +219,7 @@ impl Settings {
             Parameter::Distance => word(self.distance as usize),
             Parameter::Cost => word(self.cost as usize),
             Parameter::Sel => word(self.sel as usize),
+            Parameter::Remesh => self.remesh.map_or_else(|| ORIGINAL.to_owned(), |vertices| vertices.to_string()),
             Parameter::Kmax => self.kmax.to_string(),
             Parameter::K => self.k.to_string(),
             Parameter::Rounds => self.rounds.to_string(),
@@ -214,12 +234,17 @@ impl Settings {
     pub fn set(&mut self, parameter: Parameter, value: &str, classes: usize) -> Result<(), String> {
         let choices = parameter.choices();
         if choices.is_empty() {
+            if parameter == Parameter::Remesh && value.trim().eq_ignore_ascii_case(ORIGINAL) {
+                self.remesh = None;
+                return Ok(());
+            }
             let (least, greatest) = parameter.range(classes);
             let number =
                 value.trim().parse::<usize>().ok().filter(|number| (least..=greatest).contains(number)).ok_or_else(
                     || format!("{} takes a number from {least} to {greatest}, not {value:?}", parameter.name()),
                 )?;
             match parameter {
+                Parameter::Remesh => self.remesh = Some(number),
                 Parameter::Kmax => self.kmax = number,
                 Parameter::K => self.k = number,
                 Parameter::Rounds => self.rounds = number,
@@ -248,7 +273,15 @@ impl Settings {
     pub fn step(&mut self, parameter: Parameter, steps: isize, classes: usize) -> bool {
         let before = self.clone();
         let choices = parameter.choices();
-        let next = if choices.is_empty() {
+        let next = if parameter == Parameter::Remesh {
+            // Below the least number there are the models as they are.
+            let (least, greatest) = parameter.range(classes);
+            match self.remesh.unwrap_or(0).saturating_add_signed(steps) {
+                0 => ORIGINAL.to_owned(),
+                _ if self.remesh.is_some_and(|vertices| vertices == least) && steps < 0 => ORIGINAL.to_owned(),
+                number => number.clamp(least, greatest).to_string(),
+            }
+        } else if choices.is_empty() {
             let (least, greatest) = parameter.range(classes);
             let number = self.get(parameter).parse::<usize>().unwrap_or(least);
             number.saturating_add_signed(steps).clamp(least, greatest).to_string()

@@ -3,14 +3,15 @@
 use std::{path::Path, sync::Arc, time::Instant};
 
 use super::{
-    Source,
+    Problem, Source,
     library::{FileAt, Library, Missing},
     stamp::Stamp,
     trace::Trace,
 };
 use crate::{
     mesh::{self, Format, GeometryHash, Survey},
-    spectrum::{self, Choice, Spectrum, SpectrumError},
+    remesh::RemeshError,
+    spectrum::{self, Spectrum, SpectrumError},
     store::Store,
     watch::Watch,
 };
@@ -58,12 +59,12 @@ impl Singles {
     ///
     /// # Errors
     /// [`SingleError`].
-    pub fn solve(&self, path: &Path, choice: Choice, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
+    pub fn solve(&self, path: &Path, problem: Problem, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
         let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
         let format =
             Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
         let Some(library) = &self.library else {
-            return solve_alone(path, format, choice, count, watch);
+            return solve_alone(path, format, problem, count, watch);
         };
         let stamp = match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => return Err(failed(&"a folder, not a mesh")),
@@ -74,7 +75,7 @@ impl Singles {
         let content = library.content(path, stamp).map_err(|reason| failed(&reason))?;
         let file = FileAt { path, format, content };
         let facts = library.facts(file).map_err(|failure| failed(&failure.reason))?;
-        let found = library.spectrum(file, &facts, choice, count, watch).map_err(|missing| match missing {
+        let found = library.spectrum(file, &facts, problem, count, watch).map_err(|missing| match missing {
             Missing::Cancelled => SingleError::Cancelled,
             Missing::Failed(reason) | Missing::Unread(reason) => failed(&reason),
         })?;
@@ -92,7 +93,7 @@ impl Singles {
 fn solve_alone(
     path: &Path,
     format: Format,
-    choice: Choice,
+    problem: Problem,
     count: usize,
     watch: &dyn Watch,
 ) -> Result<Single, SingleError> {
@@ -103,10 +104,15 @@ fn solve_alone(
     if let Some(reason) = survey.refusal() {
         return Err(SingleError::Failed(reason));
     }
-    let spectrum = spectrum::solve(&mesh.canonical(), choice, count, &[], watch).map_err(|error| match error {
+    let prepared = problem.prepare(&mesh, watch).map_err(|error| match error {
+        RemeshError::Cancelled => SingleError::Cancelled,
+        error => SingleError::Failed(error.to_string()),
+    })?;
+    let mut spectrum = spectrum::solve(&prepared, problem.choice, count, &[], watch).map_err(|error| match error {
         SpectrumError::Cancelled { .. } => SingleError::Cancelled,
         error => SingleError::Failed(error.to_string()),
     })?;
+    spectrum.notes.splice(0..0, problem.note());
     Ok(Single {
         geometry: mesh.hash(),
         survey,

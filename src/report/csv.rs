@@ -153,7 +153,8 @@ fn skipped(document: &Document) -> io::Result<Vec<u8>> {
     })
 }
 
-fn table(table: &Table) -> io::Result<Vec<u8>> {
+/// One table, its heads first.
+pub(super) fn table(table: &Table) -> io::Result<Vec<u8>> {
     let heads: Vec<&str> = table.columns.iter().map(String::as_str).collect();
     sheet(&heads, |out| {
         table.rows.iter().try_for_each(|row| {

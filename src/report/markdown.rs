@@ -7,7 +7,7 @@ use super::{
     layout::{cell, count, duration, is_figure, maybe, number, plain},
     text::{both, chosen, drawn, lines, read_at},
 };
-use crate::query::Parameter;
+use crate::{query::Parameter, study::Table};
 
 /// The report as Markdown.
 #[must_use]
@@ -15,7 +15,7 @@ pub fn render(document: &Document) -> String {
     let mut text = String::new();
     head(document, &mut text);
     text.push_str("\n## Parameters\n\n");
-    let rows = document.parameters.pairs().map(|(parameter, value)| {
+    let pairs = document.parameters.pairs().map(|(parameter, value)| {
         let class = document.class();
         let value = match parameter {
             Parameter::Class if !class.is_empty() => format!("{value} ({})", escape(class)),
@@ -23,17 +23,10 @@ pub fn render(document: &Document) -> String {
         };
         vec![format!("`{}`", parameter.name()), value, escape(parameter.about())]
     });
-    text.push_str(&table(&["parameter", "value", "meaning"], &[false; 3], rows));
+    text.push_str(&table(&["parameter", "value", "meaning"], &[false; 3], pairs));
     for one in &document.tables {
         let _ = writeln!(text, "\n## Table {}: {}\n", one.number, escape(&one.title));
-        let heads: Vec<String> = one.columns.iter().map(|head| escape(head)).collect();
-        let figures = |column| one.rows.iter().all(|row| row.get(column).is_none_or(is_figure));
-        let right: Vec<bool> = (0..heads.len()).map(figures).collect();
-        text.push_str(&table(
-            &heads,
-            &right,
-            one.rows.iter().map(|row| row.iter().map(|c| escape(&cell(c))).collect()),
-        ));
+        text.push_str(&rows(one));
     }
     if document.tables.is_empty() {
         text.push_str("\nNo tables: there are no models to compare.\n");
@@ -46,8 +39,16 @@ pub fn render(document: &Document) -> String {
     text
 }
 
+/// The rows of a table under its heads.
+pub(super) fn rows(one: &Table) -> String {
+    let heads: Vec<String> = one.columns.iter().map(|head| escape(head)).collect();
+    let figures = |column| one.rows.iter().all(|row| row.get(column).is_none_or(is_figure));
+    let right: Vec<bool> = (0..heads.len()).map(figures).collect();
+    table(&heads, &right, one.rows.iter().map(|row| row.iter().map(|c| escape(&cell(c))).collect()))
+}
+
 /// Text that Markdown and HTML show as it is, on one line.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in plain(text).chars() {
         if matches!(c, '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '~' | '&') {
@@ -59,7 +60,7 @@ fn escape(text: &str) -> String {
 }
 
 /// A pipe table of cells that are escaped already.
-fn table<H: AsRef<str>>(heads: &[H], right: &[bool], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(super) fn table<H: AsRef<str>>(heads: &[H], right: &[bool], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut text = String::from("|");
     for head in heads {
         let _ = write!(text, " {} |", head.as_ref());

@@ -193,18 +193,18 @@ impl<'a> Krylov<'a> {
         dispatch(Residual { matrix: &self.pencil.matrix, sigma: self.sigma, x: work.rows(), r });
         let mut sum = [Square::default()];
         dispatch(Dots { basis: &[now.rows()], t: mass.rows(), sums: &mut sum });
-        self.wrong = std::array::from_fn(|j| sum[0].iter().map(|row| row[j] * row[j]).sum::<f64>().sqrt());
+        self.wrong = std::array::from_fn(|j| sum[0].iter().fold(0.0, |most, row| row[j].abs().max(most)));
     }
 
     /// By how much the errors of the factorisation and the solves shift eigenvalues, from the first block.
     ///
     /// The solution w = S v of a solve has the residual r = Bv − (L − σB) w = E w, where E is what the solve was for
     /// in excess of L − σB, and shifts the eigenvalue of x by xᵀEx. Of this the products vᵀr of the first block with
-    /// the residuals of the first block, divided by the norms of w, are samples; their Frobenius norm is returned.
+    /// the residuals of the first block, divided by the norms of w, are samples; the largest one is returned.
     pub(super) fn accuracy(&self) -> f64 {
         let (Some(alpha), Some(beta)) = (self.alpha.first(), self.beta.first()) else { return 0.0 };
         let norm = |j: usize| alpha.iter().chain(beta).map(|row| row[j] * row[j]).sum::<f64>().sqrt();
-        self.wrong.iter().enumerate().map(|(j, wrong)| (wrong / norm(j)).powi(2)).sum::<f64>().sqrt()
+        self.wrong.iter().enumerate().fold(0.0, |most, (j, wrong)| (wrong / norm(j)).max(most))
     }
 
     /// The three-term recurrence: takes out of `work` its large components, those along the last two blocks. Only

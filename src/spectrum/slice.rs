@@ -19,7 +19,7 @@
 //!
 //! Rounding is added to both: that of the dense eigenproblem, 16 ε times the largest θ, and that of the factorisation
 //! and the solves. These solve a neighbouring problem, (L − σB + E) x = Bx. E shifts an eigenvalue by xᵀEx, which
-//! is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [sixteenfold](SAFETY). It
+//! is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [eightfold](SAFETY). It
 //! is the one part of the bound that is an estimate.
 
 use super::krylov::Ritz;
@@ -29,7 +29,7 @@ const TOLERANCE: f64 = 2e-11;
 
 /// What the measured error of the solves is multiplied with: it is seen on 64 products of vectors, and the largest of
 /// some hundred eigenvalues is asked for.
-const SAFETY: f64 = 16.0;
+const SAFETY: f64 = 8.0;
 
 /// What is lost where λ = σ + 1/θ and the entries of L − σB are rounded, relative to them.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -132,7 +132,7 @@ fn converged(list: &[Ritz], scales: Scales, floor: f64) -> Side {
         let good = list[at..end].iter().all(|ritz| {
             let per = 1.0 / (ritz.theta * ritz.theta);
             let (first, second) = (square.sqrt() * per, square / gap * per);
-            let rounding = floor * per + scales.accuracy;
+            let rounding = floor * per + SAFETY * scales.accuracy;
             ritz.residual < 1e-3 * ritz.theta.abs()
                 && first.min(second) <= TOLERANCE * ritz.value.abs().max(scales.least) + rounding
         });

@@ -6,7 +6,14 @@ use crate::query::{Parameter, Settings, Stage};
 pub const GROUPS: [(&str, &[Parameter]); 3] = [
     (
         "spectra",
-        &[Parameter::Operator, Parameter::Mass, Parameter::Boundary, Parameter::Triangulation, Parameter::Kmax],
+        &[
+            Parameter::Remesh,
+            Parameter::Operator,
+            Parameter::Mass,
+            Parameter::Boundary,
+            Parameter::Triangulation,
+            Parameter::Kmax,
+        ],
     ),
     ("features", &[Parameter::Normalisation, Parameter::Distance]),
     ("read off", &[Parameter::K, Parameter::Rounds, Parameter::Cost, Parameter::Sel, Parameter::Class]),
@@ -21,6 +28,7 @@ pub fn in_order() -> impl DoubleEndedIterator<Item = Parameter> + Clone {
 #[must_use]
 pub const fn letter(parameter: Parameter) -> char {
     match parameter {
+        Parameter::Remesh => 'h',
         Parameter::Operator => 'o',
         Parameter::Mass => 'm',
         Parameter::Boundary => 'y',
@@ -40,6 +48,7 @@ pub const fn letter(parameter: Parameter) -> char {
 #[must_use]
 pub const fn steps(parameter: Parameter) -> (isize, isize) {
     match parameter {
+        Parameter::Remesh => (1000, 10_000),
         Parameter::Kmax => (10, 100),
         Parameter::K | Parameter::Rounds => (1, 10),
         Parameter::Class => (1, 5),
@@ -71,9 +80,12 @@ pub const fn invalidates(parameter: Parameter) -> &'static [Stage] {
         Stage::Tables,
     ];
     match parameter {
-        Parameter::Operator | Parameter::Mass | Parameter::Boundary | Parameter::Triangulation | Parameter::Kmax => {
-            SPECTRA
-        }
+        Parameter::Remesh
+        | Parameter::Operator
+        | Parameter::Mass
+        | Parameter::Boundary
+        | Parameter::Triangulation
+        | Parameter::Kmax => SPECTRA,
         Parameter::Normalisation => FEATURES,
         Parameter::Distance => &[Stage::FirstK, Stage::ClimbError, Stage::ClimbAdr, Stage::Tables],
         Parameter::K | Parameter::Sel => &[Stage::Tables],
@@ -86,6 +98,7 @@ pub const fn invalidates(parameter: Parameter) -> &'static [Stage] {
 #[must_use]
 pub const fn price(parameter: Parameter) -> &'static str {
     match parameter {
+        Parameter::Remesh => "re-meshes and solves what is not stored",
         Parameter::Operator | Parameter::Mass | Parameter::Boundary | Parameter::Triangulation => {
             "solves every spectrum that is not stored"
         }
@@ -114,6 +127,9 @@ pub fn parse(parameter: Parameter, text: &str, settings: &Settings, classes: &[S
         {
             return Ok(number.to_string());
         }
+        if parameter == Parameter::Remesh && !text.is_empty() && "original".starts_with(&text.to_lowercase()) {
+            return Ok("original".to_owned());
+        }
         if parameter == Parameter::Class && !text.is_empty() {
             let exact = classes.iter().position(|class| class.eq_ignore_ascii_case(text));
             if let Some(at) = exact.or_else(|| classes.iter().position(|class| begins(class))) {
@@ -123,6 +139,7 @@ pub fn parse(parameter: Parameter, text: &str, settings: &Settings, classes: &[S
         let also = match parameter {
             Parameter::Class => " or a class's name",
             Parameter::K => " (kmax)",
+            Parameter::Remesh => ", or original",
             _ => "",
         };
         return Err(format!("{} takes a number from {least} to {greatest}{also}", parameter.name()));

@@ -256,7 +256,9 @@ mod tests {
     fn what_is_wrong_is_named_with_its_place() {
         let says = |text: &str| read(text, &Settings::default(), 3).unwrap_err().to_string();
         assert!(says("version = 2").starts_with("version 2 of recipes"));
-        assert!(says("version = 1\n[set]\nkmx = 3").starts_with("set.kmx: no such parameter; there are operator"));
+        assert!(
+            says("version = 1\n[set]\nkmx = 3").starts_with("set.kmx: no such parameter; there are remesh, operator")
+        );
         assert_eq!(says("version = 1\n[set]\nclass = 4"), "set.class: class takes a number from 1 to 3, not \"4\"");
         assert!(says("version = 1\nflavour = 3").starts_with("line 2: unknown field `flavour`"));
         assert!(says("version = ").starts_with("line 1: "));

@@ -77,8 +77,8 @@ impl Host {
     pub(crate) fn look(&self, question: Question) -> Option<Looking> {
         let (Question::Shape(model) | Question::Function { model, .. }) = question else { return None };
         let file = ModelAt::of(&self.database, self.rows.get(model)?.file);
-        let choice = self.settings.choice();
-        Some(Looking { library: self.library.clone(), file, settings: self.settings.clone(), choice, question })
+        let problem = self.settings.problem();
+        Some(Looking { library: self.library.clone(), file, settings: self.settings.clone(), problem, question })
     }
 
     /// Takes in a value of the study of `members`.

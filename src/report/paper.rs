@@ -1,0 +1,305 @@
+//! The whole experiment of the paper as one document: every table beside its published values, every figure.
+//!
+//! The experiment is made on eight spectra: original and re-meshed models, FEM and cot, normalised and not. [`collect`]
+//! turns a host through them; [`Paper::new`] makes tables, figures and words of what it said, and
+//! [`Paper::files`] writes them as Markdown, CSV, JSON, SVG and PNG. Nothing in them depends on the moment, so a second
+//! run gives the same bytes.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+pub use self::{
+    published::{Column, Published, Row, published},
+    variation::Variation,
+    write::WriteError,
+};
+use super::document::{Identity, Parameters};
+use crate::{
+    dataset::Role,
+    figure::Figure,
+    laplacian::Operator,
+    query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
+    spectrum::Normalisation,
+    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Table},
+    watch::Watch,
+};
+
+mod figures;
+mod honest;
+mod published;
+mod retrieved;
+mod tables;
+pub mod variation;
+mod write;
+
+/// Vertices of the paper's re-meshed models.
+pub const REMESHED: usize = 10_000;
+
+/// One of the paper's spectra.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Variant {
+    /// Whether the models are re-meshed first.
+    pub remeshed: bool,
+    /// Which eigenproblem.
+    pub operator: Operator,
+    /// Whether each spectrum is divided by its last eigenvalue.
+    pub normalised: bool,
+}
+
+impl Variant {
+    /// The one that the paper finds best: its Figures 4, 5 and 7 and its Table 5 are of it.
+    pub const BEST: Self = Self { remeshed: true, operator: Operator::Fem, normalised: true };
+
+    /// The eight of Figure 3, in the order in which they are computed: those that share eigenvalues together.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = Vec::new();
+        for remeshed in [false, true] {
+            for operator in [Operator::Fem, Operator::Cot] {
+                all.extend([false, true].map(|normalised| Self { remeshed, operator, normalised }));
+            }
+        }
+        all
+    }
+
+    /// Its name in tables and legends.
+    #[must_use]
+    pub fn name(self) -> String {
+        let models = if self.remeshed { "re-meshed" } else { "original" };
+        let operator = match self.operator {
+            Operator::Fem => "FEM",
+            Operator::Cot => "cot",
+        };
+        format!("{models} {operator} {}", if self.normalised { "norm." } else { "un-norm." })
+    }
+
+    /// Its column in the paper's tables; normalised cot spectra have none.
+    #[must_use]
+    pub const fn column(self) -> Option<Column> {
+        Some(match (self.remeshed, self.operator, self.normalised) {
+            (false, Operator::Fem, false) => Column::OriginalFem,
+            (false, Operator::Fem, true) => Column::OriginalFemNormalised,
+            (false, Operator::Cot, false) => Column::OriginalCot,
+            (true, Operator::Fem, false) => Column::RemeshedFem,
+            (true, Operator::Fem, true) => Column::RemeshedFemNormalised,
+            (true, Operator::Cot, false) => Column::RemeshedCot,
+            (_, Operator::Cot, true) => return None,
+        })
+    }
+
+    /// The parameters `base` turned to this spectrum.
+    #[must_use]
+    pub fn settings(self, base: &Settings) -> Settings {
+        let normalisation = if self.normalised { Normalisation::Max } else { Normalisation::None };
+        let remesh = self.remeshed.then(|| base.remesh.unwrap_or(REMESHED));
+        Settings { operator: self.operator, normalisation, remesh, ..base.clone() }
+    }
+}
+
+/// The study of one spectrum.
+#[derive(Debug, Clone, Serialize)]
+pub struct Rows {
+    /// Which spectrum.
+    pub spectrum: Variant,
+    /// Its name.
+    pub name: String,
+    /// Training models that take part.
+    pub train: usize,
+    /// Query models that take part.
+    pub query: usize,
+    /// Those that do not, with the reason.
+    pub out: Vec<(String, String)>,
+    /// Figures 3 and 6, Tables 1 and 4.
+    pub first_k: Arc<FirstK>,
+    /// Table 2.
+    pub climb_error: Arc<Climbed>,
+    /// Table 4.
+    pub climb_adr: Arc<Climbed>,
+    /// Table 3.
+    pub boosted: Arc<Boosted>,
+    /// Figures 4 and 5.
+    pub marks: Arc<Vec<Vec<Mark>>>,
+}
+
+/// Why there is no document.
+#[derive(Debug, thiserror::Error)]
+pub enum PaperError {
+    /// The watch said so; finished spectra are kept.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A spectrum cannot be studied.
+    #[error("{spectrum}: {reason}")]
+    Study {
+        /// Which.
+        spectrum: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// Makes the study on every spectrum in turn; `base` says what is not part of the paper's plan (kmax, distance, T …).
+///
+/// `watch` hears of models finished, of all spectra together. The host is left at `base`. The variants of Figure 1 are
+/// of the first training model of `base`'s class, solved on `threads` threads.
+///
+/// # Errors
+/// [`PaperError`].
+pub fn collect(host: &mut Host, base: &Settings, threads: usize, watch: &dyn Watch) -> Result<Found, PaperError> {
+    let variants = Variant::all();
+    let mut found = Found::default();
+    let mut shown = None;
+    let turns = variants.len() + 1;
+    for (turn, &variant) in variants.iter().enumerate() {
+        host.set(variant.settings(base));
+        let answer = host.run(&Turn { watch, at: turn, of: turns })?;
+        found.rows.push(Rows::new(variant, &answer)?);
+        if variant == Variant::BEST
+            && let Ok(Finding::Retrieval(rows)) = host.find(Question::Retrieval, watch)?
+        {
+            found.retrieved = rows;
+        }
+        if variant.operator == Operator::Fem && variant.normalised {
+            found.examine(host, &variant.name(), watch)?;
+        }
+        if !variant.remeshed && !variant.normalised {
+            found.variation.learn(variant.operator, &answer);
+            shown = shown.or_else(|| Some(found.variation.model_of(&answer)?.path.clone()));
+        }
+    }
+    // What a reader would ask next: features that know how large the shape is for its frequencies.
+    host.set(Settings { operator: Operator::Fem, normalisation: Normalisation::Log, remesh: None, ..base.clone() });
+    host.run(&Turn { watch, at: variants.len(), of: turns })?;
+    found.examine(host, "original FEM ln(λ·area)", watch)?;
+    host.set(base.clone());
+    if let Some(path) = shown {
+        let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(REMESHED));
+        found.variation.variants = variation::of_file(&path, choice, vertices, threads, watch)
+            .map_err(|reason| PaperError::Study { spectrum: path.display().to_string(), reason })?;
+        if watch.cancelled() {
+            return Err(Cancelled.into());
+        }
+    }
+    Ok(found)
+}
+
+/// All that the document is made of.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    /// A study per spectrum.
+    pub rows: Vec<Rows>,
+    /// Figure 1.
+    pub variation: Variation,
+    /// Table 5 and Figure 7, on [`Variant::BEST`].
+    pub retrieved: Arc<Vec<Retrieved>>,
+    /// Nested cross-validation, each with the name of its features.
+    pub honest: Vec<(String, Arc<Honest>)>,
+}
+
+impl Found {
+    /// Examines what the host has just studied.
+    fn examine(&mut self, host: &mut Host, name: &str, watch: &dyn Watch) -> Result<(), Cancelled> {
+        if let Ok(Finding::Honest(honest)) = host.find(Question::Honest, watch)? {
+            self.honest.push((name.to_owned(), honest));
+        }
+        Ok(())
+    }
+}
+
+/// One run of several, told as a part of the whole.
+struct Turn<'a> {
+    watch: &'a dyn Watch,
+    at: usize,
+    of: usize,
+}
+
+impl Watch for Turn<'_> {
+    fn cancelled(&self) -> bool {
+        self.watch.cancelled()
+    }
+
+    fn progress(&self, done: usize, total: usize) {
+        self.watch.progress(self.at * total + done, self.of * total);
+    }
+}
+
+impl Rows {
+    fn new(spectrum: Variant, answer: &Answer) -> Result<Self, PaperError> {
+        let name = spectrum.name();
+        let out: Vec<(String, String)> = answer
+            .models
+            .iter()
+            .filter_map(|model| match &model.state {
+                ModelState::Out { reason } => Some((model.name.clone(), reason.clone())),
+                _ => None,
+            })
+            .collect();
+        let study = (|| {
+            Some((
+                answer.first_k.value.clone()?,
+                answer.climb_error.value.clone()?,
+                answer.climb_adr.value.clone()?,
+                answer.boosted.value.clone()?,
+                answer.marks.value.clone()?,
+            ))
+        })();
+        let Some((first_k, climb_error, climb_adr, boosted, marks)) = study else {
+            let why =
+                answer.warnings.last().cloned().or_else(|| out.first().map(|(model, why)| format!("{model}: {why}")));
+            let reason = why.unwrap_or_else(|| "two training models at least are needed".to_owned());
+            return Err(PaperError::Study { spectrum: name, reason });
+        };
+        let members = |role| answer.members.iter().filter(|&&at| answer.models[at].role == role).count();
+        let (train, query) = (members(Role::Train), members(Role::Query));
+        Ok(Self { spectrum, name, train, query, out, first_k, climb_error, climb_adr, boosted, marks })
+    }
+}
+
+/// The document.
+#[derive(Debug, Clone)]
+pub struct Paper {
+    head: Head,
+    found: Found,
+    sections: Vec<Section>,
+}
+
+/// What the document says of itself; the beginning of its JSON.
+#[derive(Debug, Clone, Serialize)]
+struct Head {
+    program: Identity<&'static str>,
+    data: String,
+    layout: String,
+    classes: Arc<Vec<String>>,
+    parameters: Parameters,
+}
+
+/// A part of the document: words, perhaps a table, perhaps a figure.
+#[derive(Debug, Clone)]
+struct Section {
+    heading: String,
+    words: Vec<String>,
+    table: Option<(String, Table)>,
+    figure: Option<(String, Figure)>,
+}
+
+impl Paper {
+    /// The document of what [`collect`] found in the data set at `root`.
+    #[must_use]
+    pub fn new(host: &Host, root: &str, found: Found) -> Self {
+        let head = Head {
+            program: Identity { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") },
+            data: root.to_owned(),
+            layout: host.layout().to_owned(),
+            classes: Arc::new(host.classes().to_vec()),
+            parameters: Parameters(host.settings().clone()),
+        };
+        let mut sections = tables::sections(&head, &found.rows);
+        if !found.variation.variants.is_empty() {
+            sections.push(found.variation.section());
+        }
+        sections.extend(figures::sections(&head, &found.rows));
+        sections.extend(retrieved::sections(&found.retrieved));
+        sections.extend(honest::sections(&found.honest));
+        Self { head, found, sections }
+    }
+}

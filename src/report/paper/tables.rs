@@ -1,0 +1,183 @@
+//! Tables 1 to 4: a row per spectrum, each figure beside the published one.
+
+use super::{Head, Published, Row, Rows, Section, published};
+use crate::study::{Cell, Score, Table};
+
+/// Differences from the paper beyond this are named in words.
+const NOTABLE: f64 = 0.05;
+
+pub(super) fn number(value: f64, decimals: u8) -> Cell {
+    Cell::Number { value, decimals }
+}
+
+pub(super) fn maybe(value: Option<f64>, decimals: u8) -> Cell {
+    value.map_or(Cell::Missing, |value| number(value, decimals))
+}
+
+/// What one table shows of a spectrum.
+struct Entry {
+    score: Score,
+    count: f64,
+}
+
+/// How one of the tables is made.
+struct Plan {
+    stem: &'static str,
+    number: u32,
+    title: String,
+    figure: &'static str,
+    count: &'static str,
+    /// Decimals of the count: the mean over the classes has two.
+    decimals: u8,
+    row: Row,
+    entry: fn(&Rows) -> Entry,
+}
+
+fn first_k(k: usize, score: Option<Score>) -> Entry {
+    Entry { score: score.unwrap_or(Score { train: f64::NAN, query: None }), count: k as f64 }
+}
+
+fn plans(rounds: usize) -> [Plan; 5] {
+    [
+        Plan {
+            stem: "table-1-first-k",
+            number: 1,
+            title: "Classification error ε with the first k eigenvalues".to_owned(),
+            figure: "ε",
+            count: "k0",
+            decimals: 0,
+            row: Row::FirstKError,
+            entry: |rows| first_k(rows.first_k.best_error, rows.first_k.error.at(rows.first_k.best_error)),
+        },
+        Plan {
+            stem: "table-2-hcbw",
+            number: 2,
+            title: "Classification error ε after hill climbing with backward steps (HCBw)".to_owned(),
+            figure: "ε",
+            count: "sel",
+            decimals: 0,
+            row: Row::ClimbError,
+            entry: |rows| Entry { score: rows.climb_error.error, count: rows.climb_error.climb.selected.len() as f64 },
+        },
+        Plan {
+            stem: "table-3-adaboost",
+            number: 3,
+            title: format!("Classification error ε of AdaBoost, T = {rounds}"),
+            figure: "ε",
+            count: "mean sel",
+            decimals: 2,
+            row: Row::Boosted,
+            entry: |rows| Entry { score: rows.boosted.error, count: rows.boosted.mean_chosen },
+        },
+        Plan {
+            stem: "table-4-first-k",
+            number: 4,
+            title: "Mean ADR with the first k eigenvalues".to_owned(),
+            figure: "mean ADR",
+            count: "k0",
+            decimals: 0,
+            row: Row::FirstKAdr,
+            entry: |rows| first_k(rows.first_k.best_adr, rows.first_k.adr.at(rows.first_k.best_adr)),
+        },
+        Plan {
+            stem: "table-4-hcbw",
+            number: 4,
+            title: "Mean ADR after hill climbing with backward steps (HCBw)".to_owned(),
+            figure: "mean ADR",
+            count: "sel",
+            decimals: 0,
+            row: Row::ClimbAdr,
+            entry: |rows| Entry { score: rows.climb_adr.adr, count: rows.climb_adr.climb.selected.len() as f64 },
+        },
+    ]
+}
+
+/// Tables 1 to 4, and in words where they differ from the paper.
+pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
+    let plans = plans(head.parameters.0.rounds);
+    let mut sections: Vec<Section> = plans.iter().map(|plan| section(plan, rows)).collect();
+    sections.push(differences(&plans, head, rows));
+    sections
+}
+
+fn paper(plan: &Plan, rows: &Rows) -> Option<Published> {
+    rows.spectrum.column().map(|column| published(plan.row, column))
+}
+
+fn section(plan: &Plan, rows: &[Rows]) -> Section {
+    let row = |rows: &Rows| {
+        let Entry { score, count } = (plan.entry)(rows);
+        let known = paper(plan, rows);
+        let mut cells = vec![
+            Cell::Text(rows.name.clone()),
+            number(score.train, 3),
+            number(count, plan.decimals),
+            maybe(known.map(|known| known.value), 2),
+            maybe(known.map(|known| known.count), if plan.decimals == 0 { 0 } else { 2 }),
+            maybe(known.map(|known| score.train - known.value), 3),
+            maybe(score.query, 3),
+        ];
+        if plan.row == Row::Boosted {
+            cells.push(number(rows.boosted.mean_ties, 2));
+        }
+        cells
+    };
+    let (figure, count) = (plan.figure, plan.count);
+    let mut columns = vec![
+        "spectrum".to_owned(),
+        format!("{figure} on D"),
+        count.to_owned(),
+        format!("paper's {figure}"),
+        format!("paper's {count}"),
+        "difference".to_owned(),
+        format!("{figure} on Q"),
+    ];
+    let mut words = Vec::new();
+    if plan.row == Row::Boosted {
+        columns.push("mean sel with ties".to_owned());
+        words.push(
+            "`sel` counts the distinct eigenvalues that a class's strong classifier uses; *with ties* also counts those \
+             that had the same least error in a round. The paper's exceeds T, so it cannot be the former."
+                .to_owned(),
+        );
+    }
+    let table = Table { number: plan.number, title: plan.title.clone(), columns, rows: rows.iter().map(row).collect() };
+    let heading = format!("Table {}: {}", plan.number, plan.title);
+    Section { heading, words, table: Some((plan.stem.to_owned(), table)), figure: None }
+}
+
+/// Where a figure on D is further from the paper's than [`NOTABLE`], and what may be why.
+fn differences(plans: &[Plan], head: &Head, rows: &[Rows]) -> Section {
+    let mut words = vec![];
+    let mut cells = Vec::new();
+    for plan in plans {
+        for rows in rows {
+            let Some(known) = paper(plan, rows) else { continue };
+            let ours = (plan.entry)(rows).score.train;
+            let difference = ours - known.value;
+            if difference.abs() > NOTABLE {
+                cells.push(vec![
+                    Cell::Text(format!("Table {}: {}", plan.number, plan.title)),
+                    Cell::Text(rows.name.clone()),
+                    number(ours, 3),
+                    number(known.value, 2),
+                    number(difference, 3),
+                ]);
+            }
+        }
+    }
+    let compared = plans.len() * rows.iter().filter(|rows| rows.spectrum.column().is_some()).count();
+    let most = rows.iter().map(|rows| rows.train).max().unwrap_or(0);
+    words.push(format!("{} of {compared} figures on D differ from the paper's by more than {NOTABLE}.", cells.len()));
+    words.push(format!(
+        "The paper's D has 300 models in 20 classes; this one has {most} in {}. Which models the authors had in D is not \
+         published, their re-mesher is another, and so are the thresholds where the paper is silent (an AdaBoost round \
+         with weighted error 0, ties). Figures on Q are of models that no selection has seen; the paper has none.",
+        head.classes.len()
+    ));
+    let columns = ["table", "spectrum", "here", "paper", "difference"].map(String::from).to_vec();
+    let title = "Figures that differ from the paper's".to_owned();
+    let table =
+        (!cells.is_empty()).then(|| ("differences".to_owned(), Table { number: 0, title, columns, rows: cells }));
+    Section { heading: "Differences from the paper".to_owned(), words, table, figure: None }
+}

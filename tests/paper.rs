@@ -1,0 +1,84 @@
+//! The whole experiment of the paper in one command, on a small data set.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use std::{collections::BTreeMap, fs, path::Path, process::Command};
+
+fn report(data: &Path, out: &Path, cache: &Path) -> std::process::Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tui"));
+    command.arg("report").arg(data).args(["--study", "paper", "--threads", "2", "--out"]).arg(out);
+    command.arg("--cache").arg(cache).args(["--set", "kmax=20", "--set", "remesh=150", "--set", "T=5"]);
+    command.output().unwrap()
+}
+
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    files.map(|path| (path.file_name().unwrap().to_str().unwrap().to_owned(), fs::read(&path).unwrap())).collect()
+}
+
+#[test]
+fn every_table_and_figure_is_there_and_a_second_run_gives_the_same_bytes() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 5);
+    let (first, second) = (folder.path().join("first"), folder.path().join("second"));
+    let output = report(&data, &first, &cache);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(report(&data, &second, &cache).status.success());
+    let (first, second) = (files(&first), files(&second));
+    assert_eq!(first.keys().collect::<Vec<_>>(), second.keys().collect::<Vec<_>>());
+    for (name, bytes) in &first {
+        assert!(*bytes == second[name], "{name} differs");
+    }
+
+    let text = String::from_utf8(first["paper.md"].clone()).unwrap();
+    for wanted in
+        ["Table 1", "Table 2", "Table 3", "Table 4", "Figure 1", "Figure 3", "Figure 4", "Figure 5", "Figure 6"]
+    {
+        assert!(text.contains(&format!("\n## {wanted}:")), "no {wanted}");
+    }
+    for link in text.lines().filter_map(|line| line.strip_prefix("![")?.split_once("](")?.1.strip_suffix(')')) {
+        assert!(first[link].starts_with(b"<svg"), "{link}");
+        assert!(first[&link.replace(".svg", ".png")].starts_with(b"\x89PNG"), "{link}");
+    }
+    let json: serde_json::Value = serde_json::from_slice(&first["paper.json"]).unwrap();
+    let spectra = json["spectra"].as_array().unwrap();
+    assert_eq!(spectra.len(), 8);
+    // The same shapes have other spectra when they are re-meshed, and other figures at the same k.
+    let curve = |at: usize| &spectra[at]["first_k"]["error"]["train"];
+    assert_eq!(curve(0).as_array().unwrap().len(), 20);
+    assert_ne!(curve(0), curve(4));
+    // The cells of the CSV are those of the Markdown, unrounded.
+    let table = String::from_utf8(first["table-1-first-k.csv"].clone()).unwrap();
+    let least = curve(1).as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).fold(f64::INFINITY, f64::min);
+    let row = table.lines().find(|line| line.starts_with("original FEM norm.")).unwrap();
+    assert_eq!(row.split(',').nth(1).unwrap().parse::<f64>().unwrap(), least);
+    // A model rotated has the spectrum it had, a bent one another.
+    let variation: Vec<Vec<f64>> = json["variation"]["variants"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|variant| variant["fem"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect())
+        .collect();
+    let difference =
+        |at: usize| variation[at].iter().zip(&variation[0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(
+        difference(1) < 1e-9 && difference(2) < 1e-9 && difference(3) > 1e-3,
+        "{} {}",
+        difference(1),
+        difference(3)
+    );
+}
+
+#[test]
+fn a_folder_is_needed() {
+    let folder = common::scratch();
+    let data = folder.path().join("data");
+    common::write_data(&data, 2, 2);
+    let output = Command::new(env!("CARGO_BIN_EXE_tui")).arg("report").arg(&data).args(["--study", "paper"]).output();
+    let output = output.unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--out"));
+}
