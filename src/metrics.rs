@@ -22,11 +22,12 @@ pub use self::{
     ranking::{adr, confusion, figures, rank},
     recall::Recall,
     sample::Sample,
+    scale::Scale,
     sweep::{Sweep, sweep},
 };
 pub(crate) use self::{
     columns::Columns,
-    distance::{Chi2, L1, L2, Term, by_distance},
+    distance::{Chi2, L1, L2, Term, Wesd2, Wesd15, by_distance},
     found::{gained, gained_with_itself, precision, ranking, ranks, sums},
     nearest::{Nearest, before},
 };
@@ -43,6 +44,7 @@ mod recall;
 mod sample;
 #[cfg(test)]
 pub(crate) mod samples;
+mod scale;
 mod sweep;
 
 /// The computation was told that its result is no longer wanted.

@@ -30,7 +30,8 @@ fn a_wrong_command_line_exits_with_2_and_says_what_is_wrong() {
         (&["report", "data", "--format", "xml"], "text, md, csv, json"),
         (
             &["report", "data", "--set", "kmx=3"],
-            "operator, mass, boundary, triangulation, kmax, normalisation, distance, k, T, cost, sel, class",
+            "operator, mass, boundary, triangulation, kmax, normalisation, weights, distance, search, weak, stop, k, T, cost, \
+             sel, class",
         ),
         (&["data", "--set", "T"], "NAME=VALUE"),
         (&["data", "--set", "T=0"], "T takes a number from 1"),

@@ -47,7 +47,8 @@ fn stage(answer: &Answer, stage: Stage) -> (usize, usize, usize) {
 }
 
 use Query::{
-    Boost, BoostRows, Climb, ClimbRows, Content, Facts, FirstK, FirstKRows, MarkRows, Sample, Spectrum, TableRows,
+    Boost, BoostRows, Climb, ClimbRows, Content, Facts, FirstK, FirstKRows, HeldOut, MarkRows, Sample, Spectrum,
+    TableRows,
 };
 
 const MODELS: usize = 12;
@@ -93,6 +94,21 @@ fn each_parameter_runs_exactly_what_reads_it() {
         after(&mut host, Parameter::Distance, "l1"),
         [FirstK, Climb, Climb, FirstKRows, ClimbRows, ClimbRows, TableRows]
     );
+    assert_eq!(after(&mut host, Parameter::Weights, "fisher"), learning);
+    let log = after(&mut host, Parameter::Weights, "none");
+    assert!(!log.iter().any(|q| [Spectrum, Sample, FirstK, Climb, Boost].contains(q)), "{log:?}");
+    // The tables are made again only where another way of selecting selects something else.
+    let mut but_tables = |parameter, value| {
+        let mut log = after(&mut host, parameter, value);
+        log.retain(|query| *query != TableRows);
+        log
+    };
+    assert_eq!(but_tables(Parameter::Search, "level"), [Climb, Climb, ClimbRows, ClimbRows]);
+    but_tables(Parameter::Search, "strict");
+    assert_eq!(but_tables(Parameter::Weak, "interval"), [Boost, BoostRows, MarkRows]);
+    but_tables(Parameter::Weak, "range");
+    assert_eq!(but_tables(Parameter::Stop, "early"), [HeldOut, BoostRows, MarkRows]);
+    after(&mut host, Parameter::Stop, "fixed");
     assert_eq!(after(&mut host, Parameter::Normalisation, "max"), learning);
     assert_eq!(after(&mut host, Parameter::Mass, "lumped"), with_spectra(MODELS, &LEARNING));
     // Back to what was: only the rows that read the parameter are made again, of results in memory.
@@ -280,7 +296,7 @@ enum Edit {
 
 fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let edit = prop_oneof![
-        4 => (0..8_usize, 0..5_usize).prop_map(|(parameter, value)| Edit::Set(parameter, value)),
+        4 => (0..12_usize, 0..5_usize).prop_map(|(parameter, value)| Edit::Set(parameter, value)),
         1 => Just(Edit::Undo),
         2 => (0..9_usize, 0..12_usize).prop_map(|(file, shape)| Edit::Change(file, shape)),
         1 => (0..3_usize, 0..12_usize).prop_map(|(class, shape)| Edit::Add(class, shape)),
@@ -335,7 +351,11 @@ fn play(script: &[Edit]) {
                     (Parameter::Mass, ["consistent", "lumped", "consistent", "lumped", "consistent"]),
                     (Parameter::Kmax, ["4", "12", "7", "20", "15"]),
                     (Parameter::Normalisation, ["none", "area", "max", "weyl", "log"]),
-                    (Parameter::Distance, ["l2", "l1", "chi2", "l2", "l1"]),
+                    (Parameter::Weights, ["none", "standard", "within", "fisher", "none"]),
+                    (Parameter::Distance, ["l2", "l1", "chi2", "wesd1.5", "wesd2"]),
+                    (Parameter::Search, ["strict", "level", "beam", "strict", "level"]),
+                    (Parameter::Weak, ["range", "interval", "threshold", "range", "interval"]),
+                    (Parameter::Stop, ["fixed", "early", "fixed", "early", "fixed"]),
                     (Parameter::K, ["1", "3", "5", "7", "30"]),
                     (Parameter::Rounds, ["1", "5", "20", "63", "70"]),
                     (Parameter::Sel, ["chosen", "ties", "chosen", "ties", "chosen"]),

@@ -53,19 +53,11 @@ fn assert_near(ours: &[f64], theirs: &[f64]) {
     }
 }
 
-fn name(distance: Distance) -> &'static str {
-    match distance {
-        Distance::L2 => "l2",
-        Distance::L1 => "l1",
-        Distance::Chi2 => "chi2",
-    }
-}
-
 #[test]
 fn first_k_agrees() {
     let (sample, expected) = (read(), expected());
     for distance in Distance::ALL {
-        let (ours, theirs) = (first_k(&sample, distance, &Unwatched).unwrap(), &expected[name(distance)]);
+        let (ours, theirs) = (first_k(&sample, distance, &Unwatched).unwrap(), &expected[distance.name()]);
         assert_eq!(ours.error.train, numbers(&theirs["error"][0]));
         assert_eq!(ours.error.query, numbers(&theirs["error"][1]));
         assert_near(&ours.adr.train, &numbers(&theirs["adr"][0]));
@@ -82,7 +74,7 @@ fn hill_climbing_agrees() {
         for (cost, key) in [(Cost::Error, "climb_error"), (Cost::Adr, "climb_adr")] {
             let climb = climb(&sample, distance, cost, &Unwatched).unwrap();
             let Climbed { climb, error, adr } = climbed(&sample, distance, &climb);
-            let theirs = &expected[name(distance)][key];
+            let theirs = &expected[distance.name()][key];
             assert_eq!(climb.selected, indices(&theirs["selected"]));
             let steps = theirs["steps"].as_array().unwrap();
             assert_eq!(climb.steps.len(), steps.len());

@@ -20,8 +20,8 @@ use super::{
 use crate::{
     dataset::Role,
     mesh::Format,
-    metrics::{Distance, Features},
-    selection::{self, Climb, Cost, SelCount, Strong},
+    metrics::{Distance, Features, Scale},
+    selection::{self, Climb, Cost, Search, SelCount, Stop, Strong, Weak},
     spectrum::{Normalisation, Spectrum},
     study::{self, FirstK, Sample},
     watch::Watch,
@@ -114,7 +114,15 @@ pub(crate) struct Knobs {
     #[returns(copy)]
     pub(crate) normalisation: Normalisation,
     #[returns(copy)]
+    pub(crate) scale: Scale,
+    #[returns(copy)]
     pub(crate) distance: Distance,
+    #[returns(copy)]
+    pub(crate) search: Search,
+    #[returns(copy)]
+    pub(crate) weak: Weak,
+    #[returns(copy)]
+    pub(crate) stop: Stop,
     #[returns(copy)]
     pub(crate) k: usize,
     #[returns(copy)]
@@ -161,6 +169,8 @@ pub(crate) struct SampleKey<'db> {
     pub(crate) problem: Problem,
     #[returns(copy)]
     pub(crate) normalisation: Normalisation,
+    #[returns(copy)]
+    pub(crate) scale: Scale,
     /// How many features each model has.
     #[returns(copy)]
     pub(crate) width: usize,
@@ -186,6 +196,8 @@ pub(crate) struct ClimbKey<'db> {
     pub(crate) distance: Distance,
     #[returns(copy)]
     pub(crate) cost: Cost,
+    #[returns(copy)]
+    pub(crate) search: Search,
 }
 
 /// A run of AdaBoost on a sample.
@@ -194,6 +206,8 @@ pub(crate) struct ClimbKey<'db> {
 pub(crate) struct BoostKey<'db> {
     #[returns(copy)]
     pub(crate) sample: SampleKey<'db>,
+    #[returns(copy)]
+    pub(crate) weak: Weak,
     #[returns(copy)]
     pub(crate) rounds: usize,
 }
@@ -269,7 +283,7 @@ pub(crate) fn sample<'db>(db: &'db dyn Db, key: SampleKey<'db>) -> Result<Arc<Sa
         let (train, train_labels) = side(Role::Train);
         let (query, query_labels) = side(Role::Query);
         let classes = Knobs::get(db).classes(db).len();
-        Arc::new(Sample { train, train_labels, query, query_labels, classes })
+        Arc::new(key.scale(db).apply(&Sample { train, train_labels, query, query_labels, classes }))
     }))
 }
 
@@ -289,7 +303,7 @@ pub(crate) fn climb<'db>(db: &'db dyn Db, key: ClimbKey<'db>) -> Result<Arc<Clim
     let sample = sample(db, key.sample(db))?;
     let stage = climb_stage(key.cost(db));
     Ok(trace(db).run(Query::Climb, stage, || {
-        let climb = selection::climb(&sample, key.distance(db), key.cost(db), db.revoked());
+        let climb = selection::climb_by(&sample, key.distance(db), key.cost(db), key.search(db), db.revoked());
         Arc::new(climb.unwrap_or_else(|_| leave(db)))
     }))
 }
@@ -306,7 +320,17 @@ pub(crate) fn climb_stage(cost: Cost) -> Stage {
 pub(crate) fn boost<'db>(db: &'db dyn Db, key: BoostKey<'db>) -> Result<Arc<Vec<Strong>>, Failure> {
     let sample = sample(db, key.sample(db))?;
     Ok(trace(db).run(Query::Boost, Stage::Boost, || {
-        let strong = selection::boost(&sample, key.rounds(db), db.revoked());
+        let strong = selection::boost_by(&sample, key.rounds(db), key.weak(db), db.revoked());
         Arc::new(strong.unwrap_or_else(|_| leave(db)))
+    }))
+}
+
+/// AdaBoost's ε on models held out of an inner run, after 1… rounds.
+#[salsa::tracked(returns(clone))]
+pub(crate) fn held_out<'db>(db: &'db dyn Db, key: BoostKey<'db>) -> Result<Arc<Vec<f64>>, Failure> {
+    let sample = sample(db, key.sample(db))?;
+    Ok(trace(db).run(Query::HeldOut, Stage::Boost, || {
+        let errors = selection::held_out(&sample, key.rounds(db), key.weak(db), db.revoked());
+        Arc::new(errors.unwrap_or_else(|_| leave(db)))
     }))
 }

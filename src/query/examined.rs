@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{
     db::{Cohort, Db, Knobs, leave, sample, trace},
     library::Failure,
-    rows::{boost_rows, climb_rows, first_k_rows, of_width},
+    rows::{boost_rows, climb_rows, first_k_rows, of_width, unscaled},
     trace::Query,
 };
 use crate::{
@@ -40,18 +40,20 @@ pub(crate) fn honest_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<A
     let (distance, plan) = (knobs.distance(db), Plan::default());
     let rounds = knobs.rounds(db) as u32;
     let methods = Learner::DEFAULT.map(|learner| match learner {
-        Learner::Boost(_) => Learner::Boost(rounds),
+        Learner::Boost { .. } => Learner::Boost { rounds, weak: knobs.weak(db), stop: knobs.stop(db) },
+        Learner::Hill(cost, _) => Learner::Hill(cost, knobs.search(db)),
         other => other,
     });
-    let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
-    let how = format!("{distance:?} {plan:?} {methods:?}");
+    let scale = knobs.scale(db);
+    let sample = sample(db, unscaled(db, cohort, knobs.kmax(db)))?;
+    let how = format!("{scale:?} {distance:?} {plan:?} {methods:?}");
     let key = Key::new("honest").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
     let store = db.library().store();
     trace(db).executed(Query::HonestRows);
     if let Some(kept) = store.get::<Honest>(&key) {
         return Ok(Arc::new(kept));
     }
-    let found = study::honest(&sample, distance, &methods, plan, db.revoked()).unwrap_or_else(|_| leave(db));
+    let found = study::honest(&sample, scale, distance, &methods, plan, db.revoked()).unwrap_or_else(|_| leave(db));
     store.put(&key, &found);
     Ok(Arc::new(found))
 }

@@ -138,7 +138,11 @@ impl Host {
             settings.problem(),
             settings.kmax,
             settings.normalisation,
+            settings.weights,
             settings.distance,
+            settings.search,
+            settings.weak,
+            settings.stop,
             settings.k,
             settings.rounds,
             settings.sel,
@@ -211,6 +215,18 @@ impl Host {
             }
             if old.kmax != new.kmax {
                 knobs.set_kmax(db).to(new.kmax);
+            }
+            if old.search != new.search {
+                knobs.set_search(db).to(new.search);
+            }
+            if old.weak != new.weak {
+                knobs.set_weak(db).to(new.weak);
+            }
+            if old.stop != new.stop {
+                knobs.set_stop(db).to(new.stop);
+            }
+            if old.weights != new.weights {
+                knobs.set_scale(db).to(new.weights);
             }
             if old.normalisation != new.normalisation {
                 knobs.set_normalisation(db).to(new.normalisation);

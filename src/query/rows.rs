@@ -9,12 +9,16 @@ use std::sync::Arc;
 
 use super::{
     Stage,
-    db::{BoostKey, ClimbKey, Cohort, Db, FirstKKey, Knobs, SampleKey, boost, climb, climb_stage, first_k, sample},
+    db::{
+        BoostKey, ClimbKey, Cohort, Db, FirstKKey, Knobs, SampleKey, boost, climb, climb_stage, first_k, held_out,
+        sample,
+    },
     library::Failure,
     trace::Query,
 };
 use crate::{
-    selection::{Cost, Strong},
+    metrics::Scale,
+    selection::{Cost, Search, Stop, Strong, stop_at},
     study::{self, Boosted, Climbed, FirstK, Mark, Table},
 };
 
@@ -30,7 +34,13 @@ pub(super) fn wide<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> SampleKey<'db> 
 
 pub(super) fn of_width<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
     let knobs = Knobs::get(db);
-    SampleKey::new(db, cohort, knobs.problem(db), knobs.normalisation(db), width)
+    SampleKey::new(db, cohort, knobs.problem(db), knobs.normalisation(db), knobs.scale(db), width)
+}
+
+/// The same features before they are scaled, for those who learn the scale themselves.
+pub(super) fn unscaled<'db>(db: &'db dyn Db, cohort: Cohort<'db>, width: usize) -> SampleKey<'db> {
+    let knobs = Knobs::get(db);
+    SampleKey::new(db, cohort, knobs.problem(db), knobs.normalisation(db), Scale::None, width)
 }
 
 /// The first-k curves up to kmax.
@@ -46,29 +56,38 @@ pub(crate) fn first_k_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<
 #[salsa::tracked(returns(clone))]
 pub(crate) fn climb_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>, cost: Cost) -> Result<Arc<Climbed>, Failure> {
     let knobs = Knobs::get(db);
-    let (distance, kmax) = (knobs.distance(db), knobs.kmax(db));
+    let (distance, search, kmax) = (knobs.distance(db), knobs.search(db), knobs.kmax(db));
     let mut key = wide(db, cohort);
-    let mut found = climb(db, ClimbKey::new(db, key, distance, cost))?;
-    if found.reach() as usize > kmax {
+    let mut found = climb(db, ClimbKey::new(db, key, distance, cost, search))?;
+    // Only the strict climb over fewer features is the same climb when it reaches no further: the others are made by
+    // moves that did not last, too.
+    if found.reach() as usize > kmax || (search != Search::Strict && key.width(db) != kmax) {
         key = of_width(db, cohort, kmax);
-        found = climb(db, ClimbKey::new(db, key, distance, cost))?;
+        found = climb(db, ClimbKey::new(db, key, distance, cost, search))?;
     }
     let sample = sample(db, key)?;
     let trace = db.library().trace();
     Ok(trace.cut(Query::ClimbRows, climb_stage(cost), || Arc::new(study::climbed(&sample, distance, &found))))
 }
 
-/// Every class's strong classifier over the first kmax features, T rounds of it, and the sample it was learnt on.
+/// Every class's strong classifier over the first kmax features, T rounds of it or fewer, and the sample it was learnt
+/// on.
 pub(super) fn strong<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<(Vec<Strong>, SampleKey<'db>), Failure> {
     let knobs = Knobs::get(db);
-    let (rounds, kmax) = (knobs.rounds(db), knobs.kmax(db));
-    let run = rounds.next_power_of_two().max(ROUNDS_AHEAD);
+    let (weak, kmax) = (knobs.weak(db), knobs.kmax(db));
+    let run = knobs.rounds(db).next_power_of_two().max(ROUNDS_AHEAD);
     let mut key = wide(db, cohort);
+    let mut rounds = knobs.rounds(db);
+    if knobs.stop(db) == Stop::Early {
+        // What was held out of a run over all features says nothing of one over the first kmax.
+        key = of_width(db, cohort, kmax);
+        rounds = stop_at(&held_out(db, BoostKey::new(db, key, weak, run))?, rounds);
+    }
     let cut = |runs: Arc<Vec<Strong>>| runs.iter().map(|strong| strong.cut(rounds)).collect::<Vec<_>>();
-    let mut classes = cut(boost(db, BoostKey::new(db, key, run))?);
+    let mut classes = cut(boost(db, BoostKey::new(db, key, weak, run))?);
     if classes.iter().any(|strong| strong.reach() as usize > kmax) {
         key = of_width(db, cohort, kmax);
-        classes = cut(boost(db, BoostKey::new(db, key, run))?);
+        classes = cut(boost(db, BoostKey::new(db, key, weak, run))?);
     }
     for round in classes.iter_mut().flat_map(|strong| &mut strong.rounds) {
         round.ties.retain(|&index| index as usize <= kmax);

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::Problem;
 use crate::{
     laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
-    metrics::Distance,
+    metrics::{Distance, Scale},
     remesh,
-    selection::{Cost, SelCount},
+    selection::{Cost, Search, SelCount, Stop, Weak},
     spectrum::Normalisation,
 };
 
@@ -35,10 +35,18 @@ pub struct Settings {
     pub kmax: usize,
     /// What is made of them.
     pub normalisation: Normalisation,
+    /// How much each feature counts.
+    pub weights: Scale,
     /// How features are compared.
     pub distance: Distance,
     /// The k at which the first-k figures are read off.
     pub k: usize,
+    /// Which moves hill climbing takes.
+    pub search: Search,
+    /// What AdaBoost's weak classifiers may ask.
+    pub weak: Weak,
+    /// When AdaBoost's rounds end.
+    pub stop: Stop,
     /// AdaBoost's rounds T.
     pub rounds: usize,
     /// Which of the two hill climbings is shown in detail.
@@ -59,7 +67,11 @@ impl Default for Settings {
             triangulation: Triangulation::Auto,
             kmax: 500,
             normalisation: Normalisation::Max,
+            weights: Scale::None,
             distance: Distance::L2,
+            search: Search::Strict,
+            weak: Weak::Range,
+            stop: Stop::Fixed,
             k: 10,
             rounds: 20,
             cost: Cost::Error,
@@ -86,8 +98,16 @@ pub enum Parameter {
     Kmax,
     /// [`Settings::normalisation`].
     Normalisation,
+    /// [`Settings::weights`].
+    Weights,
     /// [`Settings::distance`].
     Distance,
+    /// [`Settings::search`].
+    Search,
+    /// [`Settings::weak`].
+    Weak,
+    /// [`Settings::stop`].
+    Stop,
     /// [`Settings::k`].
     K,
     /// [`Settings::rounds`].
@@ -102,7 +122,7 @@ pub enum Parameter {
 
 impl Parameter {
     /// All of them, in the order in which they are shown.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 17] = [
         Self::Remesh,
         Self::Operator,
         Self::Mass,
@@ -110,7 +130,11 @@ impl Parameter {
         Self::Triangulation,
         Self::Kmax,
         Self::Normalisation,
+        Self::Weights,
         Self::Distance,
+        Self::Search,
+        Self::Weak,
+        Self::Stop,
         Self::K,
         Self::Rounds,
         Self::Cost,
@@ -129,7 +153,11 @@ impl Parameter {
             Self::Triangulation => "triangulation",
             Self::Kmax => "kmax",
             Self::Normalisation => "normalisation",
+            Self::Weights => "weights",
             Self::Distance => "distance",
+            Self::Search => "search",
+            Self::Weak => "weak",
+            Self::Stop => "stop",
             Self::K => "k",
             Self::Rounds => "T",
             Self::Cost => "cost",
@@ -149,7 +177,11 @@ impl Parameter {
             Self::Triangulation => "triangles summed over: auto, given, delaunay or tufted",
             Self::Kmax => "eigenvalues of each model that are used",
             Self::Normalisation => "what is made of λ: none, area (λ·area), max (λ/λ_kmax), weyl, log",
-            Self::Distance => "how features are compared: l2, l1, chi2",
+            Self::Weights => "how much each feature counts: none, standard, within, fisher",
+            Self::Distance => "how features are compared: l2, l1, chi2, wesd1.5, wesd2",
+            Self::Search => "moves of hill climbing: strict (downwards), level, beam",
+            Self::Weak => "what AdaBoost asks of an eigenvalue: range, interval, threshold",
+            Self::Stop => "AdaBoost ends after T rounds (fixed) or where it is best (early)",
             Self::K => "the k at which the first-k figures are read off",
             Self::Rounds => "rounds of AdaBoost",
             Self::Cost => "what the hill climbing shown minimises: error or adr",
@@ -167,7 +199,11 @@ impl Parameter {
             Self::Boundary => &["neumann", "dirichlet"],
             Self::Triangulation => &["auto", "given", "delaunay", "tufted"],
             Self::Normalisation => &["none", "area", "max", "weyl", "log"],
-            Self::Distance => &["l2", "l1", "chi2"],
+            Self::Weights => &["none", "standard", "within", "fisher"],
+            Self::Distance => &["l2", "l1", "chi2", "wesd1.5", "wesd2"],
+            Self::Search => &["strict", "level", "beam"],
+            Self::Weak => &["range", "interval", "threshold"],
+            Self::Stop => &["fixed", "early"],
             Self::Cost => &["error", "adr"],
             Self::Sel => &["chosen", "ties"],
             Self::Remesh | Self::Kmax | Self::K | Self::Rounds | Self::Class => &[],
@@ -216,7 +252,11 @@ impl Settings {
             Parameter::Boundary => word(self.boundary as usize),
             Parameter::Triangulation => word(self.triangulation as usize),
             Parameter::Normalisation => word(self.normalisation as usize),
+            Parameter::Weights => word(self.weights as usize),
             Parameter::Distance => word(self.distance as usize),
+            Parameter::Search => word(self.search as usize),
+            Parameter::Weak => word(self.weak as usize),
+            Parameter::Stop => word(self.stop as usize),
             Parameter::Cost => word(self.cost as usize),
             Parameter::Sel => word(self.sel as usize),
             Parameter::Remesh => self.remesh.map_or_else(|| ORIGINAL.to_owned(), |vertices| vertices.to_string()),
@@ -262,7 +302,11 @@ impl Settings {
             Parameter::Boundary => self.boundary = [Boundary::Neumann, Boundary::Dirichlet][index],
             Parameter::Triangulation => self.triangulation = Triangulation::ALL[index],
             Parameter::Normalisation => self.normalisation = Normalisation::ALL[index],
+            Parameter::Weights => self.weights = Scale::ALL[index],
             Parameter::Distance => self.distance = Distance::ALL[index],
+            Parameter::Search => self.search = Search::ALL[index],
+            Parameter::Weak => self.weak = Weak::ALL[index],
+            Parameter::Stop => self.stop = [Stop::Fixed, Stop::Early][index],
             Parameter::Cost => self.cost = [Cost::Error, Cost::Adr][index],
             _ => self.sel = [SelCount::Chosen, SelCount::Ties][index],
         }

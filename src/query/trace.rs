@@ -25,6 +25,8 @@ pub enum Query {
     Climb,
     /// AdaBoost's rounds.
     Boost,
+    /// AdaBoost's ε on models held out.
+    HeldOut,
     /// The first-k curves, cut to kmax.
     FirstKRows,
     /// A hill climbing's result at kmax with its scores.

@@ -72,6 +72,7 @@ pub(super) fn answer() -> Answer {
         error,
         alpha: 0.5 * ((1.0 - error) / error).ln(),
         ties: ties.to_vec(),
+        test: None,
     };
     let mark = |index, alpha| Mark { index, alpha, low: 0.1, mean: 0.15, high: 0.3 };
 

@@ -3,6 +3,8 @@
 //! A weak classifier never errs on the positives, whose range it is. Its weighted error ε_t is therefore the weight of
 //! the negatives within that range, and which ones those are does not change over the rounds.
 
+pub use self::general::{Stop, boost_by, held_out, stop_at};
+
 use rayon::prelude::*;
 
 use super::{
@@ -13,6 +15,8 @@ use crate::{
     metrics::{Cancelled, Sample},
     watch::Watch,
 };
+
+mod general;
 
 /// Lower bound of ε in α = ½ ln((1 − ε)/ε), which is infinite for a weak classifier that makes no error. With
 /// it α is at most 11.5.
@@ -81,7 +85,8 @@ fn best(errors: &[f64]) -> Option<Round> {
     let error = *errors.get(lead)?;
     let ties = (lead..errors.len()).filter(|&col| (errors[col] - error).abs() <= TIE);
     let alpha = 0.5 * ((1.0 - error.max(LEAST_ERROR)) / error.max(LEAST_ERROR)).ln();
-    let round = Round { index: lead as u32 + 1, error, alpha, ties: ties.map(|col| col as u32 + 1).collect() };
+    let ties = ties.map(|col| col as u32 + 1).collect();
+    let round = Round { index: lead as u32 + 1, error, alpha, ties, test: None };
     (error < 0.5 - TIE).then_some(round)
 }
 
@@ -205,7 +210,7 @@ mod tests {
             for weight in &mut weights {
                 *weight /= total;
             }
-            taken.push(Round { index: ties[0], error, alpha, ties });
+            taken.push(Round { index: ties[0], error, alpha, ties, test: None });
         }
         taken
     }
@@ -272,7 +277,7 @@ mod tests {
         };
         let strong = boost(&sample, 5, &Unwatched).unwrap();
         let alpha = 0.5 * ((1.0 - LEAST_ERROR) / LEAST_ERROR).ln();
-        let round = Round { index: 2, error: 0.0, alpha, ties: vec![2, 3] };
+        let round = Round { index: 2, error: 0.0, alpha, ties: vec![2, 3], test: None };
         assert_eq!(strong[0].rounds, vec![round; 5]);
         // The third class has no models.
         assert_eq!(strong[2], Strong::default());

@@ -12,9 +12,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use self::{block::LANES, ground::Ground, judge::Judge, race::Race};
+use self::judge::Judge;
 use crate::{
-    metrics::{Cancelled, Distance, Sample, Term, by_distance},
+    metrics::{Cancelled, Distance, Sample, by_distance},
     watch::Watch,
 };
 
@@ -23,6 +23,7 @@ mod ground;
 mod judge;
 mod line;
 mod race;
+mod search;
 
 /// What hill climbing minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
@@ -34,6 +35,31 @@ pub enum Cost {
     /// 1 − mean ADR (Table 4).
     Adr,
 }
+
+/// Which moves hill climbing takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Search {
+    /// Those that lower the cost, the paper's.
+    #[default]
+    Strict,
+    /// Where none does, those that leave it as it is, too, to selections not seen before: up to [`PATIENCE`] in a row.
+    /// What is found ends where the least cost was first reached.
+    Level,
+    /// [`BEAM`] selections at a time, each with its best additions, whether they lower the cost or not, and with
+    /// removals while these do; until the least cost has not fallen for two additions.
+    Beam,
+}
+
+impl Search {
+    /// All of them, in the order in which they are offered.
+    pub const ALL: [Self; 3] = [Self::Strict, Self::Level, Self::Beam];
+}
+
+/// Moves in a row that may leave the cost as it is.
+pub const PATIENCE: usize = 10;
+/// Selections that a beam keeps.
+pub const BEAM: usize = 6;
 
 /// One accepted move of hill climbing.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -78,40 +104,27 @@ impl Climb {
     }
 }
 
-/// Climbs over all features of the training models, leave-one-out.
+/// Climbs over all features of the training models, leave-one-out, as the paper does.
 ///
 /// # Errors
 /// [`Cancelled`] when the watch said so.
 pub fn climb(sample: &Sample, distance: Distance, cost: Cost, watch: &dyn Watch) -> Result<Climb, Cancelled> {
-    let judge = Judge::new(sample, cost);
-    by_distance!(distance, T => climb_by::<T>(sample, &judge, watch))
+    climb_by(sample, distance, cost, Search::Strict, watch)
 }
 
-fn climb_by<T: Term>(sample: &Sample, judge: &Judge<'_>, watch: &dyn Watch) -> Result<Climb, Cancelled> {
-    let mut climb = Climb::default();
-    let mut ground = Ground::<T>::new(sample, judge);
-    let race = Race::new(sample.train.cols());
-    let mut loss = judge.worst();
-    loop {
-        let moves = climb.steps.len();
-        for forward in [true, false] {
-            while let Some((lower, index)) = if forward {
-                race.run(&ground.outside(), loss, LANES, |block, bound| ground.with(block, bound, watch))?
-            } else {
-                race.run(ground.selected(), loss, 1, |block, bound| ground.without(block[0], bound, watch))?
-            } {
-                loss = lower;
-                ground.toggle(index);
-                climb.steps.push(Step { index, added: forward, cost: judge.cost_of(loss) });
-            }
-        }
-        if climb.steps.len() == moves {
-            break;
-        }
-    }
-    climb.selected = climb.order();
-    climb.selected.sort_unstable();
-    Ok(climb)
+/// Climbs by other moves.
+///
+/// # Errors
+/// [`Cancelled`] when the watch said so.
+pub fn climb_by(
+    sample: &Sample,
+    distance: Distance,
+    cost: Cost,
+    search: Search,
+    watch: &dyn Watch,
+) -> Result<Climb, Cancelled> {
+    let judge = Judge::new(sample, cost);
+    by_distance!(distance, T => search::run::<T>(sample, &judge, search, watch))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The weak classifiers: where the positives' values lie.
 
+use super::Round;
 use crate::metrics::Sample;
 
 /// For every class, the range of its training models' values at every eigenvalue.
@@ -40,8 +41,16 @@ impl Ranges {
         (&self.low[at.clone()], &self.high[at])
     }
 
-    /// Whether the weak classifier of `class` at `index` (from 1) says +1 to a model with these features.
-    pub(crate) fn holds(&self, class: usize, index: u32, features: &[f64]) -> bool {
+    /// Whether a weak classifier of `class` says +1 to a model with these features.
+    pub(crate) fn says(&self, class: usize, round: &Round, features: &[f64]) -> bool {
+        match &round.test {
+            Some(test) => test.says(features[round.index as usize - 1]),
+            None => self.holds(class, round.index, features),
+        }
+    }
+
+    /// Whether the range of `class` at `index` (from 1) holds a model with these features.
+    fn holds(&self, class: usize, index: u32, features: &[f64]) -> bool {
         let col = index as usize - 1;
         let (low, high) = self.class(class);
         (low[col]..=high[col]).contains(&features[col])

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::ranges::Ranges;
+use super::{ranges::Ranges, weak::Test};
 
 /// Which number of eigenvalues AdaBoost is said to have selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
@@ -28,6 +28,9 @@ pub struct Round {
     pub alpha: f64,
     /// All indices that tied for the least error, ascending; `index` is the first.
     pub ties: Vec<u32>,
+    /// What it asks of that eigenvalue; none when it is whether the class's range holds it, as in the paper.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub test: Option<Test>,
 }
 
 /// The strong classifier of one class against the rest.
@@ -64,7 +67,7 @@ impl Strong {
 
     /// S = Σ `α_t` `h_t` for a model with these features.
     pub(crate) fn score(&self, class: usize, ranges: &Ranges, features: &[f64]) -> f64 {
-        let says = |round: &Round| if ranges.holds(class, round.index, features) { round.alpha } else { -round.alpha };
+        let says = |round: &Round| if ranges.says(class, round, features) { round.alpha } else { -round.alpha };
         self.rounds.iter().map(says).sum()
     }
 }
@@ -97,7 +100,7 @@ mod tests {
     use super::{Round, SelCount, Strong, decide, probability};
 
     fn strong() -> Strong {
-        let round = |index, ties: &[u32]| Round { index, error: 0.1, alpha: 1.0, ties: ties.to_vec() };
+        let round = |index, ties: &[u32]| Round { index, error: 0.1, alpha: 1.0, ties: ties.to_vec(), test: None };
         Strong { rounds: vec![round(3, &[3, 4]), round(3, &[3]), round(9, &[9, 12])] }
     }
 

@@ -126,7 +126,7 @@ mod tests {
     }
 
     fn round(index: u32, alpha: f64) -> Round {
-        Round { index, error: 0.1, alpha, ties: vec![index, 2] }
+        Round { index, error: 0.1, alpha, ties: vec![index, 2], test: None }
     }
 
     #[test]

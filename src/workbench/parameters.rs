@@ -3,7 +3,7 @@
 use crate::query::{Parameter, Settings, Stage};
 
 /// Parameters by what turning one costs, the dearest first; the panel shows them in these groups.
-pub const GROUPS: [(&str, &[Parameter]); 3] = [
+pub const GROUPS: [(&str, &[Parameter]); 4] = [
     (
         "spectra",
         &[
@@ -15,7 +15,8 @@ pub const GROUPS: [(&str, &[Parameter]); 3] = [
             Parameter::Kmax,
         ],
     ),
-    ("features", &[Parameter::Normalisation, Parameter::Distance]),
+    ("features", &[Parameter::Normalisation, Parameter::Weights, Parameter::Distance]),
+    ("selection", &[Parameter::Search, Parameter::Weak, Parameter::Stop]),
     ("read off", &[Parameter::K, Parameter::Rounds, Parameter::Cost, Parameter::Sel, Parameter::Class]),
 ];
 
@@ -35,7 +36,11 @@ pub const fn letter(parameter: Parameter) -> char {
         Parameter::Triangulation => 'i',
         Parameter::Kmax => 'x',
         Parameter::Normalisation => 'n',
+        Parameter::Weights => 'G',
         Parameter::Distance => 'd',
+        Parameter::Search => 'H',
+        Parameter::Weak => 'K',
+        Parameter::Stop => 'O',
         Parameter::K => 'k',
         Parameter::Rounds => 't',
         Parameter::Cost => 'c',
@@ -86,10 +91,11 @@ pub const fn invalidates(parameter: Parameter) -> &'static [Stage] {
         | Parameter::Boundary
         | Parameter::Triangulation
         | Parameter::Kmax => SPECTRA,
-        Parameter::Normalisation => FEATURES,
+        Parameter::Normalisation | Parameter::Weights => FEATURES,
         Parameter::Distance => &[Stage::FirstK, Stage::ClimbError, Stage::ClimbAdr, Stage::Tables],
         Parameter::K | Parameter::Sel => &[Stage::Tables],
-        Parameter::Rounds => &[Stage::Boost, Stage::Tables],
+        Parameter::Search => &[Stage::ClimbError, Stage::ClimbAdr, Stage::Tables],
+        Parameter::Weak | Parameter::Stop | Parameter::Rounds => &[Stage::Boost, Stage::Tables],
         Parameter::Cost | Parameter::Class => &[],
     }
 }
@@ -103,8 +109,10 @@ pub const fn price(parameter: Parameter) -> &'static str {
             "solves every spectrum that is not stored"
         }
         Parameter::Kmax => "greater: solves the bands above; smaller: a slice",
-        Parameter::Normalisation => "features and selections anew; no spectra",
+        Parameter::Normalisation | Parameter::Weights => "features and selections anew; no spectra",
         Parameter::Distance => "first-k and hill climbing anew; not AdaBoost",
+        Parameter::Search => "hill climbing anew",
+        Parameter::Weak | Parameter::Stop => "AdaBoost anew",
         Parameter::K => "nothing: read off the curves",
         Parameter::Rounds => "a slice of AdaBoost's run, or further rounds",
         Parameter::Cost | Parameter::Sel | Parameter::Class => "nothing: another view of the same",
@@ -172,7 +180,8 @@ mod tests {
     #[test]
     fn a_parameters_letter_is_in_its_name_and_its_own() {
         for parameter in Parameter::ALL {
-            assert!(parameter.name().to_lowercase().contains(letter(parameter)), "{}", parameter.name());
+            let letter_in = letter(parameter).to_ascii_lowercase();
+            assert!(parameter.name().to_lowercase().contains(letter_in), "{}", parameter.name());
             let sharing = Parameter::ALL.into_iter().filter(|other| letter(*other) == letter(parameter)).count();
             assert_eq!(sharing, 1, "{}", letter(parameter));
         }
@@ -183,7 +192,7 @@ mod tests {
         let settings = Settings::default();
         let parse = |parameter, text| said(parse(parameter, text, &settings, &[]));
         assert_eq!(parse(Parameter::Normalisation, " WE "), "= weyl");
-        assert_eq!(parse(Parameter::Distance, "l"), "distance takes l2, l1, chi2");
+        assert_eq!(parse(Parameter::Distance, "l"), "distance takes l2, l1, chi2, wesd1.5, wesd2");
         assert_eq!(parse(Parameter::Distance, "l1"), "= l1");
         assert_eq!(parse(Parameter::Operator, ""), "operator takes fem, cot");
         assert_eq!(parse(Parameter::Mass, "lumpy"), "mass takes consistent, lumped, blended");

@@ -169,7 +169,7 @@ mod tests {
     fn a_sweep_goes_over_words_and_round_numbers() {
         let settings = Settings { kmax: 40, ..Settings::default() };
         let over = |parameter| Sweep::over(parameter, &settings, 3).values;
-        assert_eq!(over(Parameter::Distance), ["l2", "l1", "chi2"]);
+        assert_eq!(over(Parameter::Distance), ["l2", "l1", "chi2", "wesd1.5", "wesd2"]);
         assert_eq!(over(Parameter::Kmax), ["1", "2", "3", "5", "7", "10", "20", "30", "40"]);
         assert_eq!(over(Parameter::Rounds).last().unwrap(), "1000");
         assert_eq!(over(Parameter::Class), ["1", "2", "3"]);

@@ -1,7 +1,8 @@
-//! How long selection and metrics take: `cargo bench --bench learning [-- FEATURES.csv]`.
+//! How long selection and metrics take, on one thread: `cargo bench --bench learning [-- [--json] FEATURES.csv…]`.
 //!
 //! On a seeded synthetic sample of the size of SHREC 2007 (285 training models of 19 classes, 95 queries, 500
-//! features), and on a CSV file `model,class,role,f1,f2,…` when one is given.
+//! features), and on CSV files `model,class,role,f1,f2,…`. With `--json`, the stages of the files alone, a line of
+//! seconds by stage each: what `against_sklearn.sh` reads.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
@@ -15,53 +16,85 @@ use eigenselect::{
 };
 
 /// Runs of which the shortest is shown.
-const RUNS: usize = 5;
+const RUNS: usize = 7;
 
 fn main() {
-    println!("{} threads", rayon::current_num_threads());
-    report("synthetic", &synthetic());
-    for path in std::env::args().skip(1).filter(|argument| !argument.starts_with('-')) {
-        report(&path, &read(&path));
-    }
+    let (options, paths): (Vec<_>, Vec<_>) = std::env::args().skip(1).partition(|argument| argument.starts_with('-'));
+    let json = options.iter().any(|option| option == "--json");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| {
+        if !json {
+            report("synthetic", &synthetic());
+        }
+        for path in &paths {
+            let sample = read(path);
+            if json {
+                let stages = stages(&sample, Distance::L2).into_iter();
+                let stages: Vec<_> =
+                    stages.map(|stage| format!("\"{}\": {:e}", stage.name, stage.time.as_secs_f64())).collect();
+                println!("{{{}}}", stages.join(", "));
+            } else {
+                report(path, &sample);
+            }
+        }
+    });
+}
+
+/// One stage of learning: its shortest run and what it found.
+struct Stage {
+    name: &'static str,
+    time: Duration,
+    said: String,
+}
+
+/// What a change of normalisation sets off.
+fn stages(sample: &Sample, distance: Distance) -> Vec<Stage> {
+    let hill = |cost| {
+        let climb = climb(sample, distance, cost, &Unwatched).unwrap();
+        let climbed = climbed(sample, distance, &climb);
+        let (error, adr) = (climbed.error, climbed.adr);
+        format!("{:?}, {} moves, ε {error:.4?}, ADR {adr:.4?}", climb.selected, climb.steps.len())
+    };
+    let boosted = |rounds| {
+        let boosted = study::boosted(sample, &boost(sample, rounds, &Unwatched).unwrap());
+        let (chosen, ties) = (boosted.mean_chosen, boosted.mean_ties);
+        format!("ε {:.4?}, sel {chosen:.2} chosen, {ties:.2} with ties", boosted.error)
+    };
+    vec![
+        time("first-k", || {
+            let curves = first_k(sample, distance, &Unwatched).unwrap();
+            let (error, adr) = (curves.error.at(curves.best_error), curves.adr.at(curves.best_adr));
+            format!("ε {error:.4?} at {}, ADR {adr:.4?} at {}", curves.best_error, curves.best_adr)
+        }),
+        time("HCBw error", || hill(Cost::Error)),
+        time("HCBw ADR", || hill(Cost::Adr)),
+        time("AdaBoost 20", || boosted(20)),
+        time("AdaBoost 100", || boosted(100)),
+    ]
 }
 
 fn report(name: &str, sample: &Sample) {
     let (train, query, cols) = (sample.train.rows(), sample.query.rows(), sample.train.cols());
     println!("\n{name}: {train} + {query} models, {cols} features, {} classes", sample.classes);
     for distance in Distance::ALL {
-        println!("  {distance:?}");
-        time("first-k", || {
-            let curves = first_k(sample, distance, &Unwatched).unwrap();
-            let (error, adr) = (curves.error.at(curves.best_error), curves.adr.at(curves.best_adr));
-            format!("ε {error:.4?} at {}, ADR {adr:.4?} at {}", curves.best_error, curves.best_adr)
-        });
-        for cost in [Cost::Error, Cost::Adr] {
-            time(&format!("HCBw {cost:?}"), || {
-                let climb = climb(sample, distance, cost, &Unwatched).unwrap();
-                let climbed = climbed(sample, distance, &climb);
-                let (error, adr) = (climbed.error, climbed.adr);
-                format!("{:?}, {} moves, ε {error:.4?}, ADR {adr:.4?}", climb.selected, climb.steps.len())
-            });
+        let stages = stages(sample, distance);
+        let total: Duration = stages.iter().map(|stage| stage.time).sum();
+        println!("  {distance:?}: {:.2} ms together", total.as_secs_f64() * 1e3);
+        for Stage { name, time, said } in stages {
+            println!("    {name:<14} {:8.2} ms   {said}", time.as_secs_f64() * 1e3);
         }
-    }
-    for rounds in [20, 64] {
-        time(&format!("AdaBoost, T = {rounds}"), || {
-            let boosted = study::boosted(sample, &boost(sample, rounds, &Unwatched).unwrap());
-            let (chosen, ties) = (boosted.mean_chosen, boosted.mean_ties);
-            format!("ε {:.4?}, sel {chosen:.2} chosen, {ties:.2} with ties", boosted.error)
-        });
     }
 }
 
-fn time(name: &str, run: impl Fn() -> String) {
-    let mut least = Duration::MAX;
+fn time(name: &'static str, run: impl Fn() -> String) -> Stage {
+    let mut time = Duration::MAX;
     let mut said = String::new();
     for _ in 0..RUNS {
         let start = Instant::now();
         said = run();
-        least = least.min(start.elapsed());
+        time = time.min(start.elapsed());
     }
-    println!("    {name:<18} {:8.2} ms   {said}", least.as_secs_f64() * 1e3);
+    Stage { name, time, said }
 }
 
 /// Spectra that grow linearly, bent by class, pose and noise, and divided by their last value. They are about as hard

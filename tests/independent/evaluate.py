@@ -3,7 +3,7 @@
     python3 tests/independent/evaluate.py FEATURES.csv [DISTANCE ...] > expected.json
 
 FEATURES.csv: model,class,role,f1,f2,... with role train or query. Classes count in the order of their first appearance.
-DISTANCE: l2, l1, chi2 (all by default). Indices of features and values of k count from 1, models and classes from 0.
+DISTANCE: l2, l1, chi2, wesd1.5, wesd2 (all by default). Indices of features and values of k count from 1, models and classes from 0.
 
 Written from the definitions, whole matrices at a time, and without a look at how the program does it: plain sorts for
 every k and every candidate. Models with nothing relevant to find are left out of mean ADR; the empty selection has
@@ -28,6 +28,10 @@ def term(distance, a, b):
         return difference ** 2
     if distance == "l1":
         return np.abs(difference)
+    if distance.startswith("wesd"):
+        product = np.abs(a[:, None] * b[None, :])
+        ratio = np.divide(np.abs(difference), product, out=np.zeros_like(difference), where=product != 0)
+        return ratio * (ratio if distance == "wesd2" else np.sqrt(ratio))
     total = np.abs(a)[:, None] + np.abs(b)[None, :]
     return np.divide(difference ** 2, total, out=np.zeros_like(difference), where=total != 0)
 
@@ -168,7 +172,7 @@ def main():
         sides.append(Side(query, query_labels, train, labels))
 
     report = {}
-    for distance in sys.argv[2:] or ["l2", "l1", "chi2"]:
+    for distance in sys.argv[2:] or ["l2", "l1", "chi2", "wesd1.5", "wesd2"]:
         curves = [first_k(side, distance) for side in sides]
         best_error = int(np.argmin(curves[0][0])) + 1
         best_adr = int(np.argmax(curves[0][1])) + 1

@@ -173,7 +173,7 @@ fn strong(numbers: &mut Numbers, rounds: usize) -> Strong {
         .map(|_| {
             let index = 1 + (numbers.next().powi(2) * 499.0) as u32;
             let error = 0.01 + 0.2 * numbers.next();
-            Round { index, error, alpha: 0.5 * ((1.0 - error) / error).ln(), ties: vec![index] }
+            Round { index, error, alpha: 0.5 * ((1.0 - error) / error).ln(), ties: vec![index], test: None }
         })
         .collect();
     Strong { rounds }

@@ -22,6 +22,7 @@ const BRIEF: usize = 48;
 const POLL: usize = 16;
 
 /// What is known of one model under the selection.
+#[derive(Clone)]
 pub(super) struct Row {
     /// Distance sums to all models; infinite for itself and for the padding.
     pub(super) sums: Vec<f64>,
@@ -32,6 +33,7 @@ pub(super) struct Row {
 }
 
 /// All training models under the selection.
+#[derive(Clone)]
 pub(super) struct Ground<'a, T> {
     sample: &'a Sample,
     judge: &'a Judge<'a>,
@@ -108,6 +110,9 @@ impl<'a, T: Term> Ground<'a, T> {
 
     /// The loss with `index` alone.
     fn alone(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+        if !T::GROWS {
+            return self.exactly(index, bound, watch);
+        }
         let mut line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()]);
         self.one_by_one(index, bound, watch, |model| {
             self.judge.loss(model, line.nearest::<T>(model, self.judge.looks_at(model)))
@@ -134,9 +139,9 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The loss with `index` added.
-    fn exactly(&self, index: u32, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+    fn exactly(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
         let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
-        self.one_by_one(index, &|| (u128::MAX, 0), watch, |model| {
+        self.one_by_one(index, bound, watch, |model| {
             nearest.begin(Some(model));
             nearest.sums.copy_from_slice(&self.rows[model].sums);
             self.loss_of(model, &[index], &mut nearest)
@@ -256,7 +261,7 @@ impl<T: Term> Ask<'_, T> {
             } else if (loss, index) >= (self.bound)() {
                 Outcome::GivenUp(loss as f64)
             } else {
-                self.ground.exactly(index, self.watch)?
+                self.ground.exactly(index, self.bound, self.watch)?
             });
         }
         Ok(())

@@ -35,22 +35,24 @@ impl Race {
         Self { form: (0..=cols).map(|_| AtomicU64::new(0)).collect() }
     }
 
-    /// The candidate with the least loss below `loss`; of several the lowest index.
+    /// The `keep` candidates with the least losses below `loss`, ascending; of equal ones the lowest indices.
     ///
     /// `evaluate` gets up to `together` candidates at once, and what is to be beaten; it returns an outcome for each.
     pub(super) fn run<F>(
         &self,
         candidates: &[u32],
         loss: u128,
+        keep: usize,
         together: usize,
         evaluate: F,
-    ) -> Result<Option<Mark>, Cancelled>
+    ) -> Result<Vec<Mark>, Cancelled>
     where
         F: Fn(&[u32], &dyn Fn() -> Mark) -> Result<Vec<Outcome>, Cancelled> + Sync,
     {
         // Index 0 comes before all: an equal loss is not below.
-        let best = Mutex::new((loss, 0));
+        let best = Mutex::new(vec![(loss, 0); keep]);
         let lock = || best.lock().unwrap_or_else(PoisonError::into_inner);
+        let bound = || lock().last().copied().unwrap_or_default();
         let form = |index: u32| f64::from_bits(self.form[index as usize].load(Ordering::Relaxed));
         let mut order: Vec<(f64, u32)> = candidates.iter().map(|&index| (form(index), index)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -59,12 +61,14 @@ impl Race {
         let next = AtomicUsize::new(0);
         (0..rayon::current_num_threads()).into_par_iter().try_for_each(|_| {
             while let Some(block) = blocks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                for (&index, outcome) in block.iter().zip(evaluate(block, &|| *lock())?) {
+                for (&index, outcome) in block.iter().zip(evaluate(block, &bound)?) {
                     let form = match outcome {
                         Outcome::GivenUp(form) => form,
                         Outcome::Whole(whole) => {
                             let mut best = lock();
-                            *best = (*best).min((whole, index));
+                            best.push((whole, index));
+                            best.sort_unstable();
+                            best.truncate(keep);
                             whole as f64
                         }
                     };
@@ -73,7 +77,8 @@ impl Race {
             }
             Ok(())
         })?;
-        let best = best.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok((best.1 > 0).then_some(best))
+        let mut best = best.into_inner().unwrap_or_else(PoisonError::into_inner);
+        best.retain(|&(_, index)| index > 0);
+        Ok(best)
     }
 }

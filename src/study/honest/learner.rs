@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     metrics::{Cancelled, Columns, Distance, Exam, Sample, gained, ranking, ranks, sums},
-    selection::{Cost, Ranges, SelCount, boost, climb, decide},
+    selection::{Cost, Ranges, Search, SelCount, Stop, Weak, boost_by, climb_by, decide, held_out, stop_at},
     study::first_k,
     watch::Watch,
 };
@@ -19,12 +19,17 @@ pub enum Learner {
     FirstKAdr,
     /// Nearest neighbour over as many of the first eigenvalues: nothing is selected.
     Fixed(u32),
-    /// Nearest neighbour over what hill climbing for ε selects.
-    HillError,
-    /// Nearest neighbour over what hill climbing for mean ADR selects.
-    HillAdr,
-    /// AdaBoost's strong classifiers after so many rounds.
-    Boost(u32),
+    /// Nearest neighbour over what hill climbing selects, for a cost and by certain moves.
+    Hill(Cost, Search),
+    /// AdaBoost's strong classifiers.
+    Boost {
+        /// Rounds, at most.
+        rounds: u32,
+        /// What they are made of.
+        weak: Weak,
+        /// When they end.
+        stop: Stop,
+    },
 }
 
 /// What a method made of the training models, asked for the queries.
@@ -40,7 +45,13 @@ pub(super) struct Verdict {
 impl Learner {
     /// The paper's three for ε, hill climbing for mean ADR, and two that select nothing.
     pub const DEFAULT: [Self; 6] =
-        [Self::FirstK, Self::HillError, Self::Boost(20), Self::HillAdr, Self::Fixed(50), Self::Fixed(u32::MAX)];
+        [Self::FirstK, Self::HILL, Self::BOOST, Self::Hill(Cost::Adr, Search::Strict), Self::Fixed(50), Self::ALL];
+    /// Hill climbing for ε, as in the paper.
+    pub const HILL: Self = Self::Hill(Cost::Error, Search::Strict);
+    /// AdaBoost as in the paper.
+    pub const BOOST: Self = Self::Boost { rounds: 20, weak: Weak::Range, stop: Stop::Fixed };
+    /// Nearest neighbour over all eigenvalues.
+    pub const ALL: Self = Self::Fixed(u32::MAX);
 
     /// Its name in tables.
     #[must_use]
@@ -50,9 +61,27 @@ impl Learner {
             Self::FirstKAdr => "first-k (ADR)".to_owned(),
             Self::Fixed(u32::MAX) => "all".to_owned(),
             Self::Fixed(k) => format!("first {k}"),
-            Self::HillError => "HCBw".to_owned(),
-            Self::HillAdr => "HCBw (ADR)".to_owned(),
-            Self::Boost(rounds) => format!("AdaBoost, T = {rounds}"),
+            Self::Hill(cost, search) => {
+                let cost = if cost == Cost::Error { "" } else { " (ADR)" };
+                let search = match search {
+                    Search::Strict => "",
+                    Search::Level => ", level",
+                    Search::Beam => ", beam",
+                };
+                format!("HCBw{cost}{search}")
+            }
+            Self::Boost { rounds, weak, stop } => {
+                let weak = match weak {
+                    Weak::Range => "",
+                    Weak::Interval => ", intervals",
+                    Weak::Threshold => ", thresholds",
+                };
+                let rounds = match stop {
+                    Stop::Fixed => format!("T = {rounds}"),
+                    Stop::Early => format!("T ≤ {rounds}"),
+                };
+                format!("AdaBoost{weak}, {rounds}")
+            }
         }
     }
 
@@ -66,14 +95,15 @@ impl Learner {
     ) -> Result<Vec<Verdict>, Cancelled> {
         let first = |k: usize| (1..=k as u32).collect::<Vec<_>>();
         let selection = match self {
-            Self::Boost(rounds) => return boosted(sample, rounds as usize, exams, watch),
+            Self::Boost { rounds, weak, stop } => {
+                return boosted(sample, (rounds as usize, weak, stop), exams, watch);
+            }
             Self::FirstK | Self::FirstKAdr => {
                 let curves = first_k(sample, distance, watch)?;
                 first(if self == Self::FirstK { curves.best_error } else { curves.best_adr })
             }
             Self::Fixed(k) => first((k as usize).min(sample.train.cols())),
-            Self::HillError => climb(sample, distance, Cost::Error, watch)?.order(),
-            Self::HillAdr => climb(sample, distance, Cost::Adr, watch)?.order(),
+            Self::Hill(cost, search) => climb_by(sample, distance, cost, search, watch)?.order(),
         };
         Ok(exams.iter().map(|&exam| nearest(sample, distance, exam, &selection)).collect())
     }
@@ -98,8 +128,17 @@ fn nearest(sample: &Sample, distance: Distance, exam: Exam<'_>, selection: &[u32
     Verdict { wrong, adr: Some(adr), selected: selection.len() as f64 }
 }
 
-fn boosted(sample: &Sample, rounds: usize, exams: &[Exam<'_>], watch: &dyn Watch) -> Result<Vec<Verdict>, Cancelled> {
-    let strong = boost(sample, rounds, watch)?;
+fn boosted(
+    sample: &Sample,
+    (rounds, weak, stop): (usize, Weak, Stop),
+    exams: &[Exam<'_>],
+    watch: &dyn Watch,
+) -> Result<Vec<Verdict>, Cancelled> {
+    let rounds = match stop {
+        Stop::Fixed => rounds,
+        Stop::Early => stop_at(&held_out(sample, rounds, weak, watch)?, rounds),
+    };
+    let strong = boost_by(sample, rounds, weak, watch)?;
     let ranges = Ranges::new(sample);
     let known: Vec<usize> = (0..sample.classes).filter(|&class| ranges.known(class)).collect();
     let selected: usize = known.iter().map(|&class| strong[class].selected(SelCount::Chosen)).sum();

@@ -10,7 +10,7 @@ use super::{
     test::{bootstrap, mcnemar, permutation},
 };
 use crate::{
-    metrics::{Cancelled, Chance, Distance, Exam, Features, Sample},
+    metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, Scale},
     watch::Watch,
 };
 
@@ -30,6 +30,8 @@ struct Tally {
 /// Examines every method by the paper's protocol and by nested cross-validation over all models, and every pair of
 /// methods against each other.
 ///
+/// `sample` is not scaled: a scale is learnt where everything else is learnt, inside the fold.
+///
 /// Models are dealt class by class, so that every fold has as even a share of each as can be. With more folds than
 /// models, some folds are empty. The watch is told how many of the (repeats × folds × methods) parts are done.
 ///
@@ -37,18 +39,20 @@ struct Tally {
 /// [`Cancelled`] when the watch said so.
 pub fn honest(
     sample: &Sample,
+    scale: Scale,
     distance: Distance,
     methods: &[Learner],
     plan: Plan,
     watch: &dyn Watch,
 ) -> Result<Honest, Cancelled> {
-    let queries = Exam::queries(sample);
+    let scaled = scale.apply(sample);
+    let queries = Exam::queries(&scaled);
     let paper = |&method: &Learner| {
-        let exams = [Exam::leave_one_out(sample), queries];
-        method.learn(sample, distance, &exams, watch)
+        let exams = [Exam::leave_one_out(&scaled), queries];
+        method.learn(&scaled, distance, &exams, watch)
     };
     let paper: Vec<Vec<Verdict>> = methods.par_iter().map(paper).collect::<Result<_, _>>()?;
-    let tallies = nested(sample, distance, methods, plan, watch)?;
+    let tallies = nested(sample, scale, distance, methods, plan, watch)?;
     let row = |(at, &method): (usize, &Learner)| {
         let (tally, asked) = (&tallies[at], plan.repeats.max(1) as f64);
         let wrong: Vec<f64> = tally.wrong.iter().map(|&wrong| f64::from(wrong) / asked).collect();
@@ -121,6 +125,7 @@ fn deal(labels: &[u32], classes: usize, folds: usize, mut chance: Chance) -> Vec
 
 fn nested(
     sample: &Sample,
+    scale: Scale,
     distance: Distance,
     methods: &[Learner],
     plan: Plan,
@@ -141,7 +146,7 @@ fn nested(
         if watch.cancelled() {
             return Err(Cancelled);
         }
-        let split = split(&models, &deals[repeat], fold, sample.classes);
+        let split = scale.apply(&split(&models, &deals[repeat], fold, sample.classes));
         let verdict = methods[method].learn(&split, distance, &[Exam::queries(&split)], watch)?.pop();
         watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, parts.len());
         Ok((repeat, fold, method, verdict))
@@ -181,15 +186,15 @@ fn split(models: &[(&[f64], u32)], deal: &[usize], fold: usize, classes: usize) 
 mod tests {
     use super::{Plan, deal, honest};
     use crate::{
-        metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures, samples::sample},
-        selection::{Cost, climb},
+        metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, Scale, figures, samples::sample},
+        selection::{Cost, Search, climb},
         study::Learner,
         watch::{Unwatched, Watch},
     };
 
     const PLAN: Plan = Plan { folds: 3, repeats: 2, resamples: 200, seed: 5 };
     const METHODS: [Learner; 5] =
-        [Learner::FirstK, Learner::HillError, Learner::Boost(6), Learner::HillAdr, Learner::Fixed(4)];
+        [Learner::FirstK, Learner::HILL, Learner::BOOST, Learner::Hill(Cost::Adr, Search::Strict), Learner::Fixed(4)];
 
     #[test]
     fn folds_share_every_class() {
@@ -207,7 +212,7 @@ mod tests {
     #[test]
     fn the_paper_s_protocol_stands_beside_it() {
         let sample = sample(2, 7, 20, 0);
-        let found = honest(&sample, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap();
+        let found = honest(&sample, Scale::None, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap();
         let order = climb(&sample, Distance::L2, Cost::Error, &Unwatched).unwrap().order();
         assert_eq!(found.rows[1].apparent, figures(Exam::leave_one_out(&sample), Distance::L2, &order).0);
         assert_eq!(found.rows[1].query, Some(figures(Exam::queries(&sample), Distance::L2, &order).0));
@@ -216,7 +221,7 @@ mod tests {
             assert!(row.error.low <= row.error.mean && row.error.mean <= row.error.high);
             let mean = row.repeats.iter().sum::<f64>() / 2.0;
             assert!((mean - row.error.mean).abs() < 1e-12);
-            assert_eq!(row.adr.is_none(), matches!(row.method, Learner::Boost(_)));
+            assert_eq!(row.adr.is_none(), row.method == Learner::BOOST);
         }
     }
 
@@ -234,7 +239,7 @@ mod tests {
             classes: part.classes,
         };
         let plan = Plan { folds: all.train.rows(), repeats: 1, ..PLAN };
-        let found = honest(&part, Distance::L1, &[Learner::Fixed(4)], plan, &Unwatched).unwrap();
+        let found = honest(&part, Scale::None, Distance::L1, &[Learner::Fixed(4)], plan, &Unwatched).unwrap();
         let (error, adr) = figures(Exam::leave_one_out(&all), Distance::L1, &[1, 2, 3, 4]);
         assert!((found.rows[0].error.mean - error).abs() < 1e-12);
         assert!((found.rows[0].adr.unwrap().mean - adr).abs() < 1e-12);
@@ -253,15 +258,28 @@ mod tests {
             classes: 2,
             ..Sample::default()
         };
-        let found = honest(&sample, Distance::L2, &[Learner::HillError], PLAN, &Unwatched).unwrap();
+        let found = honest(&sample, Scale::None, Distance::L2, &[Learner::HILL], PLAN, &Unwatched).unwrap();
         assert!(found.rows[0].apparent < 0.3, "{}", found.rows[0].apparent);
         assert!(found.rows[0].error.mean > 0.35, "{}", found.rows[0].error.mean);
     }
 
     #[test]
+    fn a_scale_is_learnt_inside_the_fold() {
+        let sample = sample(6, 7, 12, 0);
+        let of = |sample: &Sample, scale| {
+            honest(sample, scale, Distance::L2, &[Learner::ALL], PLAN, &Unwatched).unwrap().rows.remove(0)
+        };
+        let (inside, before) = (of(&sample, Scale::Fisher), of(&Scale::Fisher.apply(&sample), Scale::None));
+        assert_eq!((inside.apparent, inside.query), (before.apparent, before.query));
+        assert_ne!(inside.adr, before.adr);
+    }
+
+    #[test]
     fn two_methods_that_are_one_do_not_differ() {
         let sample = sample(4, 6, 12, 0);
-        let found = honest(&sample, Distance::L2, &[Learner::Fixed(3), Learner::Fixed(3)], PLAN, &Unwatched).unwrap();
+        let found =
+            honest(&sample, Scale::None, Distance::L2, &[Learner::Fixed(3), Learner::Fixed(3)], PLAN, &Unwatched)
+                .unwrap();
         let pair = found.pairs[0];
         assert_eq!((pair.difference.mean, pair.permutation, pair.mcnemar), (0.0, 1.0, Some(1.0)));
     }
@@ -271,7 +289,7 @@ mod tests {
         let sample = sample(4, 9, 15, 0);
         let run = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| honest(&sample, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap())
+            pool.install(|| honest(&sample, Scale::None, Distance::L2, &METHODS, PLAN, &Unwatched).unwrap())
         };
         assert_eq!(run(1), run(5));
     }
@@ -284,6 +302,6 @@ mod tests {
                 true
             }
         }
-        assert_eq!(honest(&sample(5, 5, 5, 0), Distance::L2, &METHODS, PLAN, &Stop), Err(Cancelled));
+        assert_eq!(honest(&sample(5, 5, 5, 0), Scale::None, Distance::L2, &METHODS, PLAN, &Stop), Err(Cancelled));
     }
 }

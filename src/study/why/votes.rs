@@ -49,7 +49,7 @@ pub fn votes(sample: &Arc<Sample>, asked: usize, classes: &[Strong]) -> Option<V
         .map(|(class, strong)| {
             let mut terms = BTreeMap::new();
             for round in strong.rounds.iter().filter(|_| ranges.known(class)) {
-                let says = if ranges.holds(class, round.index, features) { round.alpha } else { -round.alpha };
+                let says = if ranges.says(class, round, features) { round.alpha } else { -round.alpha };
                 *terms.entry(round.index).or_insert(0.0) += says;
             }
             terms.into_iter().collect()
@@ -96,7 +96,7 @@ mod tests {
             query_labels: vec![1],
             classes: 3,
         });
-        let round = |index, alpha| Round { index, error: 0.1, alpha, ties: vec![index] };
+        let round = |index, alpha| Round { index, error: 0.1, alpha, ties: vec![index], test: None };
         let classes = [
             Strong { rounds: vec![round(2, 0.25), round(1, 1.0), round(2, 0.5)] },
             Strong { rounds: vec![round(1, 2.0)] },

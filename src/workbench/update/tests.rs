@@ -111,7 +111,7 @@ fn k_stops_at_kmax() {
 fn words_go_round() {
     let mut state = opened();
     play(&mut state, [Action::Choose(Parameter::Distance), Action::Turn(-1)]);
-    assert_eq!(state.settings.get(Parameter::Distance), "chi2");
+    assert_eq!(state.settings.get(Parameter::Distance), "wesd2");
     play(&mut state, [Action::Turn(1)]);
     assert_eq!(state.settings.get(Parameter::Distance), "l2");
 }
