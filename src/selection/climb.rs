@@ -190,6 +190,29 @@ mod tests {
     }
 
     #[test]
+    fn copies_of_a_model_change_nothing_of_the_definition() {
+        for seed in 0..2 {
+            for (largest, cols) in [(6, 12), (14, 10)] {
+                let mut sample = sample(seed, largest, cols, 0);
+                let mut rows: Vec<Vec<f64>> =
+                    (0..sample.train.rows()).map(|row| sample.train.row(row).to_vec()).collect();
+                // Within a class, and the same shape under two labels.
+                for (copied, label) in [(0, sample.train_labels[0]), (1, sample.train_labels[1]), (2, 1), (0, 1)] {
+                    rows.push(rows[copied].clone());
+                    sample.train_labels.push(label);
+                }
+                sample.train = Features::from_rows(rows);
+                for distance in Distance::ALL {
+                    for cost in [Cost::Error, Cost::Adr] {
+                        let climb = climb(&sample, distance, cost, &Unwatched).unwrap();
+                        assert_eq!(climb, by_definition(&sample, distance, cost), "{seed} {distance:?} {cost:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn steps_back_as_defined() {
         let mut removals = 0;
         for seed in 0..120 {
