@@ -56,6 +56,44 @@ fn the_sphere_has_its_multiplicities_and_converges_with_the_square_of_the_edges(
 }
 
 #[test]
+fn two_spheres_that_touch_in_a_vertex_have_eigenvalues_between_those_of_two_that_do_not() {
+    let ball = shapes::sphere(3);
+    let (points, faces) = (ball.vertices(), ball.triangles());
+    // The second sphere is the first one turned about the vertex 0, so that they have it in common.
+    let [x, y, z] = points[0];
+    let other = points.iter().map(|[a, b, c]| [2.0 * x - a, 2.0 * y - b, 2.0 * z - c]);
+    let count = points.len() as u32;
+    let shifted =
+        |face: &[u32; 3], joined: bool| face.map(|corner| if joined && corner == 0 { 0 } else { corner + count });
+    let both = |joined: bool| {
+        let second = faces.iter().map(|face| shifted(face, joined));
+        Mesh::new(points.iter().copied().chain(other.clone()).collect(), faces.iter().copied().chain(second).collect())
+    };
+    for choice in [FEM, LUMPED] {
+        let (apart, touching) = (values(&both(false), choice, 301), values(&both(true), choice, 300));
+        let slack = 1e-10 * apart[300];
+        assert!(touching[0].abs() < slack && touching[1] > slack, "it is one piece: {:?}", &touching[..3]);
+        // One vertex in common is one linear condition: Cauchy's interlacing.
+        for (index, value) in touching.iter().enumerate() {
+            let (low, high) = (apart[index] - slack, apart[index + 1] + slack);
+            assert!((low..=high).contains(value), "{index}: {low} {value} {high}");
+        }
+    }
+}
+
+#[test]
+fn eigenvalues_that_a_perturbation_has_parted_by_a_billionth_are_all_found() {
+    let ball = shapes::sphere(4);
+    let nearly = moved(&ball, |[x, y, z]| [x * (1.0 + 1e-9), y, z * (1.0 - 1e-9 * x)]);
+    for choice in [FEM, LUMPED] {
+        let (even, parted) = (values(&ball, choice, 300), values(&nearly, choice, 300));
+        assert_ne!(bits(&even), bits(&parted));
+        let apart = worst(&parted, &even);
+        assert!(apart < 1e-8, "{apart:e}");
+    }
+}
+
+#[test]
 fn a_rectangle_has_the_neumann_spectrum() {
     let pi = std::f64::consts::PI;
     let mut expected: Vec<f64> =
