@@ -5,12 +5,13 @@
 //!         manifold?    creases    towards one length of edge
 //! ```
 //!
-//! The rounds are those of Botsch and Kobbelt (*A Remeshing Approach to Multiresolution Modeling*, 2004). Every vertex
-//! knows where on the input it lies, and a new or moved one walks from there to the nearest point near by, so all
-//! vertices lie on the input's surface; only at the very end free ones are moved a little off it, so that the area is
-//! that of the input. Sharp edges and boundaries are lines that vertices only move along; where lines meet, bend or end,
-//! vertices stay. The moves on edges keep the topology by construction: a closed manifold stays one, with its components
-//! and their genus, and a boundary keeps its loops. Tips of thin parts come out a little shorter.
+//! The rounds are those of Botsch and Kobbelt (*A Remeshing Approach to Multiresolution Modeling*, 2004). Every
+//! vertex knows where on the input it lies, and a new or moved one walks from there to the nearest point near by,
+//! so all vertices lie on the input's surface; only at the very end free ones are moved a little off it, so that
+//! the area is that of the input. Sharp edges and boundaries are lines that vertices only move along; where lines
+//! meet, bend or end, vertices stay. The moves on edges keep the topology by construction: a closed manifold stays
+//! one, with its components and their genus, and a boundary keeps its loops. Tips of thin parts come out a little
+//! shorter.
 //!
 //! The arithmetic is IEEE's own (`+ − × ÷ √`) in one fixed order, so the result depends on the canonical form of the
 //! mesh and the count alone: not on the platform, the order of the file, or other threads.
