@@ -7,7 +7,7 @@
 //! two counts. Such a slice is a [`Band`]. Nothing about it depends on how many eigenvalues were asked for, so more
 //! of them are always the same bits as before and further ones.
 //!
-//! Every eigenvalue comes with a [bound](Spectrum::residuals) on its error; what it rests on is told in [`slice`].
+//! Every eigenvalue comes with a [bound](Spectrum::residuals) on its error; what it rests on is told in [`mod@slice`].
 //! [`eigenvectors()`] of chosen eigenvalues and the eigenvalues [`near()`] a target are computed on demand.
 //!
 //! A mesh of several pieces is solved piece by piece. Everything runs on the calling thread.
