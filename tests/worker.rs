@@ -242,7 +242,6 @@ fn a_folder_that_is_not_there_is_told() {
 }
 
 #[test]
-#[ignore = "at times no settled answer comes after the folder is gone: to be mended in the worker"]
 fn files_that_vanish_after_they_were_solved_are_studied_and_others_are_out_by_name() {
     let folder = common::scratch();
     let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));

@@ -213,6 +213,27 @@ mod tests {
     }
 
     #[test]
+    fn large_classes_whose_recall_is_rounded_climb_as_defined() {
+        // Two classes of 44 and 43 that one column tells apart, so that models find all of their class.
+        let all = sample(3, 44, 4, 0);
+        let mut large = Sample { classes: 2, ..Sample::default() };
+        let known = (0..all.train.rows()).filter(|&row| all.train_labels[row] < 2);
+        let rows: Vec<Vec<f64>> = known
+            .map(|row| {
+                let label = all.train_labels[row];
+                large.train_labels.push(label);
+                let mut features = all.train.row(row).to_vec();
+                features[2] += 100.0 * f64::from(label);
+                features
+            })
+            .collect();
+        large.train = Features::from_rows(rows);
+        let climb = climb(&large, Distance::L2, Cost::Adr, &Unwatched).unwrap();
+        assert_eq!(climb, by_definition(&large, Distance::L2, Cost::Adr));
+        assert_eq!(climb.selected, [3]);
+    }
+
+    #[test]
     fn steps_back_as_defined() {
         let mut removals = 0;
         for seed in 0..120 {

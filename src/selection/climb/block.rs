@@ -128,7 +128,8 @@ impl<S: Simd> Block<S> {
         let mut losses = [whole; LANES];
         for (nth, before) in self.before[..live].iter().enumerate() {
             for (loss, &before) in losses.iter_mut().zip(lanes::<S>(std::slice::from_ref(before))) {
-                *loss -= weights.get(nth + before as usize).copied().unwrap_or(0);
+                // Credits are rounded up where units are coarse, so all of them may be more than the whole.
+                *loss = loss.saturating_sub(weights.get(nth + before as usize).copied().unwrap_or(0));
             }
         }
         (losses, sure)
