@@ -17,7 +17,7 @@ use crate::{
     query::Host,
     report::{
         Document, Format, Origin, csv,
-        paper::{self, Paper, PaperError},
+        paper::{self, PaperError},
     },
 };
 
@@ -101,20 +101,17 @@ fn paper(arguments: &ReportArguments) -> Result<Exit, Failure> {
     }
     let interrupt = Interrupt::listen().map_err(|error| Failure::caused("Ctrl-C cannot be listened to", error))?;
     let study = Study::open(&arguments.data, &arguments.arguments)?;
-    let (settings, threads) = (study.settings.clone(), study.threads);
     let cache = study.store.dir().display().to_string();
     let mut host = Host::new(study.into_config());
-    let found = {
+    let written = {
         let watch = Progress::new("spectra", "spectra; selecting eigenvalues", interrupt);
-        paper::collect(&mut host, &settings, threads, &watch)
+        paper::write(&mut host, &arguments.data.display().to_string(), folder, &watch)
     };
-    let found = found.map_err(|error| match error {
+    written.map_err(|error| match error {
         PaperError::Cancelled(_) => Failure::Interrupted(format!("{error}; finished spectra are kept in {cache}")),
         PaperError::Study { .. } => Failure::Failed(format!("{}: {error}", arguments.data.display())),
+        PaperError::Write(_) => Failure::Failed(error.to_string()),
     })?;
-    let document = Paper::new(&host, &arguments.data.display().to_string(), found);
-    let files = document.files().map_err(|error| Failure::caused("the document cannot be written", error))?;
-    output::save_all(folder, &files)?;
     Ok(Exit::Done)
 }
 

@@ -177,6 +177,12 @@ impl Host {
         &self.settings
     }
 
+    /// How many models are solved at once.
+    #[must_use]
+    pub fn threads(&self) -> usize {
+        self.pool.size()
+    }
+
     /// How the folder was understood, in one line.
     #[must_use]
     pub fn layout(&self) -> &str {

@@ -2,10 +2,10 @@
 //!
 //! The experiment is made on eight spectra: original and re-meshed models, FEM and cot, normalised and not. [`collect`]
 //! turns a host through them; [`Paper::new`] makes tables, figures and words of what it said, and
-//! [`Paper::files`] writes them as Markdown, CSV, JSON, SVG and PNG. Nothing in them depends on the moment, so a second
-//! run gives the same bytes.
+//! [`Paper::files`] writes them as Markdown, CSV, JSON, SVG and PNG. [`write()`] does all of that. Nothing in the files
+//! depends on the moment, so a second run gives the same bytes.
 
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 use serde::Serialize;
 
@@ -136,16 +136,38 @@ pub enum PaperError {
         /// Why.
         reason: String,
     },
+    /// The document is made, but it cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Makes the document for the host's parameters and writes it to `folder`, which is made if it is absent. Returns the
+/// names of the files there; those of an earlier document that it has, too, are written over.
+///
+/// `root` is what the document calls the data set. `watch` hears of models finished, of all spectra together, and is
+/// polled every few milliseconds: before it is written, a cancelled document leaves no trace but spectra in the store.
+/// On another thread than the host's, a host beside it does.
+///
+/// # Errors
+/// [`PaperError`].
+pub fn write(host: &mut Host, root: &str, folder: &Path, watch: &dyn Watch) -> Result<Vec<String>, PaperError> {
+    let base = host.settings().clone();
+    let found = collect(host, &base, watch)?;
+    let files = Paper::new(host, root, found).files()?;
+    if watch.cancelled() {
+        return Err(Cancelled.into());
+    }
+    Ok(write::save(folder, files)?)
 }
 
 /// Makes the study on every spectrum in turn; `base` says what is not part of the paper's plan (kmax, distance, T …).
 ///
 /// `watch` hears of models finished, of all spectra together. The host is left at `base`. The variants of Figure 1 are
-/// of the first training model of `base`'s class, solved on `threads` threads.
+/// of the first training model of `base`'s class, solved on as many threads as the host has.
 ///
 /// # Errors
 /// [`PaperError`].
-pub fn collect(host: &mut Host, base: &Settings, threads: usize, watch: &dyn Watch) -> Result<Found, PaperError> {
+pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Found, PaperError> {
     let variants = Variant::all();
     let mut found = Found::default();
     let mut shown = None;
@@ -174,7 +196,7 @@ pub fn collect(host: &mut Host, base: &Settings, threads: usize, watch: &dyn Wat
     host.set(base.clone());
     if let Some(path) = shown {
         let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(REMESHED));
-        found.variation.variants = variation::of_file(&path, choice, vertices, threads, watch)
+        found.variation.variants = variation::of_file(&path, choice, vertices, host.threads(), watch)
             .map_err(|reason| PaperError::Study { spectrum: path.display().to_string(), reason })?;
         if watch.cancelled() {
             return Err(Cancelled.into());

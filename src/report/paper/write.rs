@@ -1,6 +1,10 @@
 //! The document as files.
 
-use std::{fmt::Write as _, io};
+use std::{
+    fmt::Write as _,
+    fs, io,
+    path::{Path, PathBuf},
+};
 
 use serde::Serialize;
 
@@ -23,6 +27,26 @@ pub enum WriteError {
     /// A figure.
     #[error(transparent)]
     Figure(#[from] FigureError),
+    /// A file or the folder.
+    #[error("{}: cannot be written: {source}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Writes files into a folder, which is made if it is absent; returns their names.
+pub(super) fn save(folder: &Path, files: Vec<(String, Vec<u8>)>) -> Result<Vec<String>, WriteError> {
+    let at = |path: PathBuf| move |source| WriteError::File { path, source };
+    fs::create_dir_all(folder).map_err(at(folder.to_owned()))?;
+    let save = |(name, bytes): (String, Vec<u8>)| {
+        let path = folder.join(&name);
+        fs::write(&path, bytes).map_err(at(path))?;
+        Ok(name)
+    };
+    files.into_iter().map(save).collect()
 }
 
 /// The JSON.
