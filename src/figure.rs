@@ -15,10 +15,13 @@
 //! ```
 
 pub use png::FigureError;
+pub use portrait::{Bar, Portrait};
 
 mod axis;
+pub(crate) mod base64;
 mod draw;
 mod png;
+mod portrait;
 mod svg;
 
 /// A figure: panels in rows of `across`, and one legend for all below them.
@@ -123,11 +126,36 @@ pub enum Layer {
         /// `[x, low, estimate, high]`.
         bars: Vec<[f64; 4]>,
     },
+    /// A line from 0 to each value.
+    Stems {
+        /// Its name in the legend.
+        name: String,
+        /// How it looks; the mark is at the value.
+        style: Style,
+        /// `[x, value]`.
+        points: Vec<[f64; 2]>,
+    },
     /// Rectangles, the darker the greater their weight.
     Map {
         /// Each rectangle.
         cells: Vec<Cell>,
     },
+    /// Words in the middle of places.
+    Labels {
+        /// Each with its place.
+        labels: Vec<Label>,
+    },
+}
+
+/// A word of a [`Layer::Labels`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// Its middle.
+    pub at: [f64; 2],
+    /// The word.
+    pub text: String,
+    /// White, for dark ground.
+    pub light: bool,
 }
 
 /// A rectangle of a [`Layer::Map`].

@@ -21,7 +21,7 @@
 //! | – | [`dataset`] | folders, `.cla` files and splits → labelled models |
 //! | – | [`store`] | content-addressed entries on disk, which are right or a miss |
 //! | 6 | [`query`] | the salsa database that memoises all of the above, and its host |
-//! | 7 | [`report`] | rows → text, Markdown, CSV, JSON; the paper's experiment as one document |
+//! | 7 | [`report`] | rows → text, Markdown, CSV, JSON, figures; the paper's experiment as one document |
 //! | 8 | [`workbench`] | the state of the screen, its actions and its worker; knows no terminal |
 //! | 9 | [`ui`] | state → frame, one file per view |
 //! | 10 | [`terminal`], [`cli`] | the terminal's guard and signals; arguments, commands, exit codes |

@@ -11,8 +11,9 @@
 //! | CSV | [`mod@csv`] | pandas, R, a spreadsheet |
 //! | JSON | [`mod@json`] | programs, and checks of every figure; its schema is stable |
 //!
-//! [`paper`] is another document: the whole experiment of the paper, beside its published figures, with figures for
-//! print. [`spectrum`] writes the eigenvalues of single meshes, also as the `.ev` file of ShapeDNA and LaPy.
+//! [`figures`] are made of the same rows. [`paper`] is another document: the whole experiment of the paper, beside its
+//! published figures, with figures for print. [`spectrum`] writes the eigenvalues of single meshes, also as the `.ev`
+//! file of ShapeDNA and LaPy.
 
 use std::io;
 
@@ -23,6 +24,7 @@ pub use self::document::{
 
 pub mod csv;
 mod document;
+pub mod figures;
 pub mod json;
 mod layout;
 pub mod markdown;

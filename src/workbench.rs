@@ -14,7 +14,7 @@ pub use self::{
     asking::{ALL_FIGURES, Answered, Replies, first_pictured, pictured},
     entry::Entry,
     history::History,
-    message::{Command, Update},
+    message::{Command, Content, Update},
     models::{Filter, ModelList, Only, Sort},
     palette::Palette,
     pins::{Pin, Sweep},

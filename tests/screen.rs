@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "screen/figures.rs"]
+mod figures;
 #[path = "screen/replies.rs"]
 mod replies;
 #[path = "screen/sample.rs"]
@@ -16,7 +18,8 @@ use eigenselect::{
     query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
     workbench::{
-        Action, Command, Effect, Figure, Filter, Leave, State, Trial, View, keymap, pins, recipe, shape::Style, update,
+        Action, Command, Content, Effect, Figure, Filter, Leave, State, Trial, View, keymap, pins, recipe,
+        shape::Style, update,
     },
 };
 use ratatui::{
@@ -217,7 +220,8 @@ fn every_view_can_be_written_and_copied() {
         let name = format!("{}.csv", view.name().to_lowercase());
         assert_eq!(state.entry.as_ref().unwrap().text(), name);
         let effects = update(&mut state, Action::Commit);
-        let [Effect::Send(Command::Write { path, text, overwrite: false }), ..] = &effects[..] else {
+        let [Effect::Send(Command::Write { path, content: Content::Text(text), overwrite: false }), ..] = &effects[..]
+        else {
             panic!("{view:?}: {effects:?}")
         };
         assert_eq!(path.to_str().unwrap(), name);
@@ -239,11 +243,16 @@ fn a_name_that_no_format_has_is_refused_where_it_is_typed() {
     "curves.xls".chars().for_each(|c| drop(update(&mut state, Action::Insert(c))));
     assert_eq!(update(&mut state, Action::Commit), []);
     let footer = drawn(&state, MEDIUM).lines().nth(38).unwrap().to_owned();
-    assert_eq!(footer, " write to curves.xls   × the name must end in .csv, .json or .txt, or in .toml for a recipe");
+    assert_eq!(
+        footer,
+        " write to curves.xls   × the name must end in .csv, .json, .txt, .svg or .png, or in .toml for a recipe"
+    );
     update(&mut state, Action::Close);
     update(&mut state, Action::WriteRecipe);
     let effects = update(&mut state, Action::Commit);
-    assert!(matches!(&effects[..], [Effect::Send(Command::Write { text, .. })] if text.contains("T = 20")));
+    assert!(
+        matches!(&effects[..], [Effect::Send(Command::Write { content: Content::Text(text), .. })] if text.contains("T = 20"))
+    );
 }
 
 #[test]

@@ -107,7 +107,8 @@ fn round_step(step: f64) -> f64 {
 
 fn number(value: f64, decimals: usize) -> String {
     let magnitude = value.abs();
-    if magnitude >= 1e6 || decimals > 5 { format!("{value:.1e}") } else { format!("{value:.decimals$}") }
+    let text = if magnitude >= 1e6 || decimals > 5 { format!("{value:.1e}") } else { format!("{value:.decimals$}") };
+    text.replace('-', "−")
 }
 
 fn power_text(value: f64, power: i32) -> String {
@@ -131,7 +132,7 @@ mod tests {
     fn linear_axes_end_at_round_numbers_beyond_the_data() {
         assert_eq!(texts(&Axis::linear(""), &[0.07, 0.93], 5), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(texts(&Axis::linear(""), &[3.0, 498.0], 5), ["0", "100", "200", "300", "400", "500"]);
-        assert_eq!(texts(&Axis::linear(""), &[-1.0, 1.0], 4), ["-1.0", "-0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(texts(&Axis::linear(""), &[-1.0, 1.0], 4), ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
     }
 
     #[test]

@@ -88,9 +88,9 @@ impl Figure {
         let mut entries: Vec<(&str, Style, bool)> = Vec::new();
         for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
             let (name, style, line) = match layer {
-                Layer::Line { name, style, .. } => (name, style, true),
+                Layer::Line { name, style, .. } | Layer::Stems { name, style, .. } => (name, style, true),
                 Layer::Points { name, style, .. } | Layer::Intervals { name, style, .. } => (name, style, false),
-                Layer::Map { .. } => continue,
+                Layer::Map { .. } | Layer::Labels { .. } => continue,
             };
             if !name.is_empty() && !entries.iter().any(|(known, ..)| known == name) {
                 entries.push((name, *style, line));
@@ -147,6 +147,14 @@ fn values(panel: &Panel) -> (Vec<f64>, Vec<f64>) {
                 x.extend(bars.iter().map(|bar| bar[0]));
                 y.extend(bars.iter().flat_map(|bar| [bar[1], bar[2], bar[3]]));
             }
+            Layer::Stems { points, .. } => {
+                x.extend(points.iter().map(|point| point[0]));
+                y.extend(points.iter().map(|point| point[1]).chain([0.0]));
+            }
+            Layer::Labels { labels } => {
+                x.extend(labels.iter().map(|label| label.at[0]));
+                y.extend(labels.iter().map(|label| label.at[1]));
+            }
             Layer::Map { cells } => {
                 x.extend(cells.iter().flat_map(|cell| cell.x));
                 y.extend(cells.iter().flat_map(|cell| cell.y));
@@ -197,6 +205,25 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, frame: Frame) {
                     draw_mark(svg, style.mark.unwrap_or(Mark::Circle), point, style.hue);
                 }
             }
+            Layer::Stems { style, points, .. } => {
+                if let Some(zero) = y.place(0.0).map(|place| frame.y(place)) {
+                    svg.line([frame.left, zero], [frame.x(1.0), zero], AXIS);
+                }
+                for &[place, value] in points {
+                    if let (Some(foot), Some(head)) = (at(&[place, 0.0]), at(&[place, value])) {
+                        svg.line(foot, head, &stroke(*style));
+                        style.mark.into_iter().for_each(|mark| draw_mark(svg, mark, head, style.hue));
+                    }
+                }
+            }
+            Layer::Labels { labels } => {
+                for label in labels {
+                    let Some([x, y]) = at(&label.at) else { continue };
+                    let ink = if label.light { "#ffffff" } else { "#000000" };
+                    let place = [x, y + 0.36 * TEXT];
+                    svg.inked(place, Anchor::Middle, 0.0, ink, "font-size=\"10\"", &label.text);
+                }
+            }
             Layer::Intervals { style, bars, .. } => {
                 for &[place, low, middle, high] in bars {
                     if let (Some(low), Some(high)) = (at(&[place, low]), at(&[place, high])) {
@@ -222,6 +249,8 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, frame: Frame) {
             }
         }
     }
+    // Over what fills the panel to its edge.
+    svg.rect([frame.left, frame.top], frame.width, frame.height, AXIS);
 }
 
 fn draw_axes(svg: &mut Svg, panel: &Panel, frame: Frame, x: &Ruler<'_>, y: &Ruler<'_>) {
@@ -249,11 +278,12 @@ fn draw_axes(svg: &mut Svg, panel: &Panel, frame: Frame, x: &Ruler<'_>, y: &Rule
             svg.line([frame.left - 2.5, place], [frame.left, place], AXIS);
             continue;
         };
-        svg.line([frame.left, place], [frame.x(1.0), place], GRID);
+        if !matches!(panel.y.scale, Scale::Names(_)) {
+            svg.line([frame.left, place], [frame.x(1.0), place], GRID);
+        }
         svg.line([frame.left - 5.0, place], [frame.left, place], AXIS);
         svg.text([frame.left - 9.0, place + 0.36 * TEXT], Anchor::End, 0.0, "", &text);
     }
-    svg.rect([frame.left, frame.top], frame.width, frame.height, AXIS);
     let below = needs(panel).bottom - 8.0;
     svg.text([frame.x(0.5), bottom + below], Anchor::Middle, 0.0, "", &panel.x.label);
     let beside = needs(panel).left - 12.0;

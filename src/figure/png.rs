@@ -36,18 +36,26 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     Arc::new(fonts)
 });
 
+/// Draws an SVG with `scale` pixels for each of its own.
+pub(super) fn draw(svg: &str, scale: f32) -> Result<Pixmap, FigureError> {
+    let options = usvg::Options { fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let (width, height) = ((tree.size().width() * scale).ceil() as u32, (tree.size().height() * scale).ceil() as u32);
+    let mut picture = Pixmap::new(width, height).ok_or(FigureError::Size { width, height })?;
+    resvg::render(&tree, Transform::from_scale(scale, scale), &mut picture.as_mut());
+    Ok(picture)
+}
+
+pub(super) fn pack(picture: &Pixmap) -> Result<Vec<u8>, FigureError> {
+    picture.encode_png().map_err(|error| FigureError::Png(error.to_string()))
+}
+
 impl Figure {
     /// The figure as a PNG with `scale` pixels for each of the SVG's; 3 is 288 dots an inch.
     ///
     /// # Errors
     /// [`FigureError`], when it is too large.
     pub fn png(&self, scale: f32) -> Result<Vec<u8>, FigureError> {
-        let options = usvg::Options { fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
-        let tree = usvg::Tree::from_str(&self.svg(), &options)?;
-        let (width, height) =
-            ((tree.size().width() * scale).ceil() as u32, (tree.size().height() * scale).ceil() as u32);
-        let mut picture = Pixmap::new(width, height).ok_or(FigureError::Size { width, height })?;
-        resvg::render(&tree, Transform::from_scale(scale, scale), &mut picture.as_mut());
-        picture.encode_png().map_err(|error| FigureError::Png(error.to_string()))
+        pack(&draw(&self.svg(), scale)?)
     }
 }

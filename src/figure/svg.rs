@@ -74,8 +74,21 @@ impl Svg {
         ));
     }
 
-    /// `turn` in degrees, anticlockwise.
-    pub(super) fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, turn: f64, look: &str, text: &str) {
+    /// A picture, PNG as base 64.
+    pub(super) fn image(&mut self, [x, y]: [f64; 2], width: f64, height: f64, png: &str) {
+        self.write(format_args!(
+            "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" \
+             href=\"data:image/png;base64,{png}\"/>\n"
+        ));
+    }
+
+    /// Black words; `turn` in degrees, anticlockwise.
+    pub(super) fn text(&mut self, at: [f64; 2], anchor: Anchor, turn: f64, look: &str, text: &str) {
+        self.inked(at, anchor, turn, "#000000", look, text);
+    }
+
+    /// Words of a colour.
+    pub(super) fn inked(&mut self, [x, y]: [f64; 2], anchor: Anchor, turn: f64, ink: &str, look: &str, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -85,7 +98,7 @@ impl Svg {
             if turn == 0.0 { String::new() } else { format!(" transform=\"rotate({:.0} {x:.2} {y:.2})\"", -turn) };
         let text = escape(text);
         self.write(format_args!(
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" fill=\"#000000\"{turned} {look}>{text}</text>\n"
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" fill=\"{ink}\"{turned} {look}>{text}</text>\n"
         ));
     }
 
@@ -104,7 +117,14 @@ fn escape(text: &str) -> String {
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
-            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => escaped.push('\u{fffd}'),
+            // What XML cannot write, and what would turn the words after it around or hide among them.
+            letter
+                if letter.is_control()
+                    || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}')
+                    || matches!(letter, '\u{2066}'..='\u{2069}') =>
+            {
+                escaped.push('\u{fffd}');
+            }
             letter => escaped.push(letter),
         }
     }

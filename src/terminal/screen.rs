@@ -16,6 +16,7 @@ use rustix::process::{Signal, kill_current_process_group};
 
 use super::guard::{self, Guard};
 use crate::{
+    figure::base64,
     ui::{self, Look},
     workbench::State,
 };
@@ -105,7 +106,7 @@ impl Surface for Screen {
 
     fn copy(&mut self, text: &str) -> io::Result<()> {
         // OSC 52 of xterm's control sequences; terminals that do not know it, or do not allow it, ignore it.
-        let sequence = format!("\x1b]52;c;{}\x07", base64(text.as_bytes()));
+        let sequence = format!("\x1b]52;c;{}\x07", base64::encode(text.as_bytes()));
         let mut out = io::stdout().lock();
         out.write_all(sequence.as_bytes())?;
         out.flush()
@@ -121,34 +122,5 @@ impl Surface for Screen {
     fn resume(&mut self) -> io::Result<()> {
         guard::restore();
         guard::take()
-    }
-}
-
-/// Base 64 of RFC 4648, section 4.
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let bits = (0..3).fold(0_u32, |bits, place| bits << 8 | u32::from(group.get(place).copied().unwrap_or(0)));
-        for digit in 0..4 {
-            let value = bits >> (18 - 6 * digit) & 63;
-            text.push(if digit > group.len() { '=' } else { char::from(DIGITS[value as usize]) });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    #[test]
-    fn base_64_as_in_the_rfc() {
-        let pairs =
-            [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foob", "Zm9vYg=="), ("fooba", "Zm9vYmE=")];
-        for (text, expected) in pairs {
-            assert_eq!(base64(text.as_bytes()), expected);
-        }
-        assert_eq!(base64("ε".as_bytes()), "zrU=");
     }
 }

@@ -102,7 +102,9 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
     let (says, role) = match &entry.error {
         Some(error) => (format!("× {error}"), Role::Bad),
         None if state.purpose == Purpose::Needle => (String::new(), Role::Faint),
-        None if state.purpose == Purpose::File => (".csv .json .txt, or .toml for a recipe".to_owned(), Role::Faint),
+        None if state.purpose == Purpose::File => {
+            ("Tab: .csv .json .txt .svg .png; .toml for a recipe".to_owned(), Role::Faint)
+        }
         None => (range(state), Role::Faint),
     };
     let room = (pane.width() as usize).saturating_sub(x as usize + 3);

@@ -125,6 +125,8 @@ pub enum Action {
     Recall,
     /// Type the name of a file for what the view shows.
     WriteView,
+    /// The next ending of the file's name that is typed.
+    NextEnding,
     /// Type the name of a file for the session.
     WriteRecipe,
     /// Give what the view shows to the terminal to copy.

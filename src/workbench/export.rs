@@ -1,4 +1,4 @@
-//! What a view shows as a table, and the table as CSV, JSON or text.
+//! What a view shows as a table, and the table as CSV, JSON or text; what it shows as a figure, for SVG and PNG.
 //!
 //! Numbers are those that the view rounds: in CSV and JSON with the fewest digits that read back as the same double, in
 //! text with six. A figure that does not exist is an empty field, and null in JSON.
@@ -7,8 +7,12 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
-pub use self::rows::table;
+pub use self::{
+    figures::{Drawing, drawing},
+    rows::table,
+};
 
+mod figures;
 mod rows;
 
 /// Rows under named columns.
@@ -18,6 +22,17 @@ pub struct Table {
     pub columns: Vec<String>,
     /// The rows, each as long as the columns.
     pub rows: Vec<Vec<Value>>,
+}
+
+/// How a view is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Written {
+    /// As a table.
+    Table(Format),
+    /// As a figure of lines and letters.
+    Svg,
+    /// As a figure of pixels.
+    Png,
 }
 
 /// How a table is written.
@@ -31,20 +46,35 @@ pub enum Format {
     Text,
 }
 
-impl Format {
-    /// The format that a file's name asks for by its ending.
+/// The endings of the files that a view can be written to.
+pub const ENDINGS: [&str; 5] = ["csv", "json", "txt", "svg", "png"];
+
+impl Written {
+    /// What the ending of a file's name asks for.
     ///
     /// # Errors
     /// A line that says which endings there are.
     pub fn of(name: &str) -> Result<Self, String> {
         let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
         match ending.as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("json") => Ok(Self::Json),
-            Some("txt") => Ok(Self::Text),
-            _ => Err("the name must end in .csv, .json or .txt, or in .toml for a recipe".to_owned()),
+            Some("csv") => Ok(Self::Table(Format::Csv)),
+            Some("json") => Ok(Self::Table(Format::Json)),
+            Some("txt") => Ok(Self::Table(Format::Text)),
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err("the name must end in .csv, .json, .txt, .svg or .png, or in .toml for a recipe".to_owned()),
         }
     }
+}
+
+/// The name with the ending after its own, going round: Tab while a file's name is typed.
+#[must_use]
+pub fn next_ending(name: &str) -> String {
+    let (stem, ending) = name.rsplit_once('.').unwrap_or((name, ""));
+    let at = ENDINGS.iter().position(|known| known.eq_ignore_ascii_case(ending));
+    // What is no ending of ours belongs to the name.
+    let stem = if at.is_some() { stem } else { name };
+    format!("{stem}.{}", ENDINGS[at.map_or(0, |at| (at + 1) % ENDINGS.len())])
 }
 
 impl Table {
@@ -158,8 +188,18 @@ mod tests {
 
     #[test]
     fn the_ending_names_the_format() {
-        assert_eq!(Format::of("a/b.CSV"), Ok(Format::Csv));
-        assert_eq!(Format::of("b.json"), Ok(Format::Json));
-        assert!(Format::of("b").is_err() && Format::of("csv").is_err());
+        assert_eq!(Written::of("a/b.CSV"), Ok(Written::Table(Format::Csv)));
+        assert_eq!(Written::of("b.json"), Ok(Written::Table(Format::Json)));
+        assert_eq!(Written::of("b.svg"), Ok(Written::Svg));
+        assert!(Written::of("b").is_err() && Written::of("csv").is_err());
+        assert!(ENDINGS.iter().all(|ending| Written::of(&format!("a.{ending}")).is_ok()));
+    }
+
+    #[test]
+    fn endings_go_round() {
+        assert_eq!(next_ending("a.b.csv"), "a.b.json");
+        assert_eq!(next_ending("curves.PNG"), "curves.csv");
+        assert_eq!(next_ending("notes.xls"), "notes.xls.csv");
+        assert_eq!(next_ending(""), ".csv");
     }
 }

@@ -1,6 +1,10 @@
 //! Leaving with results: what is written to files, copied, and kept for the next session.
 
-use super::{Command, Effect, Entry, Notice, Purpose, State, export, recipe, update};
+use super::{
+    Command, Content, Effect, Entry, Notice, Purpose, State,
+    export::{self, Written},
+    recipe, update,
+};
 
 /// The most bytes that are copied: many terminals take no more at once.
 const COPIED: usize = 74_000;
@@ -16,19 +20,33 @@ pub(super) fn proposed(state: &State) -> String {
     format!("{}.csv", state.view.name().to_lowercase())
 }
 
-/// Writes the file whose name was typed: a recipe, or what the view shows.
+/// Turns the ending of the name being typed to the next one.
+pub(super) fn next_ending(state: &mut State) {
+    if let Some(entry) = state.entry.as_mut().filter(|_| state.purpose == Purpose::File) {
+        *entry = Entry::of(&export::next_ending(&entry.text()));
+    }
+}
+
+/// What is to be written under a name: a recipe, or what the view shows.
+fn content(state: &State, name: &str) -> Result<Content, String> {
+    if name.to_ascii_lowercase().ends_with(".toml") {
+        return recipe::write(state).map(Content::Text);
+    }
+    Ok(match Written::of(name)? {
+        Written::Table(format) => Content::Text(export::table(state)?.write(format)),
+        Written::Svg => Content::Svg(Box::new(export::drawing(state)?)),
+        Written::Png => Content::Png(Box::new(export::drawing(state)?)),
+    })
+}
+
+/// Writes the file whose name was typed.
 pub(super) fn write(state: &mut State, name: &str) -> Vec<Effect> {
-    let text = if name.to_ascii_lowercase().ends_with(".toml") {
-        recipe::write(state)
-    } else {
-        export::Format::of(name).and_then(|format| export::table(state).map(|table| table.write(format)))
-    };
-    match text {
-        Ok(text) => {
+    match content(state, name) {
+        Ok(content) => {
             state.entry = None;
             // What this session wrote may be written again; what was there before is left alone.
             let overwrite = !state.written.insert(name.to_owned());
-            vec![Effect::Send(Command::Write { path: name.into(), text, overwrite })]
+            vec![Effect::Send(Command::Write { path: name.into(), content, overwrite })]
         }
         Err(reason) => {
             if let Some(entry) = &mut state.entry {

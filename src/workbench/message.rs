@@ -4,6 +4,7 @@ use std::{path::PathBuf, sync::Arc};
 
 use super::{
     Trial,
+    export::Drawing,
     shape::{Picture, Scene},
 };
 use crate::query::{Answer, Question, Reply, Settings};
@@ -26,7 +27,7 @@ pub enum Command {
         /// Where; a relative path is below the folder that the program was started in.
         path: PathBuf,
         /// What.
-        text: String,
+        content: Content,
         /// Whether a file that is there may be replaced.
         overwrite: bool,
     },
@@ -38,6 +39,31 @@ pub enum Command {
     Resume,
     /// End.
     Quit,
+}
+
+/// What is written to a file. Figures are drawn by the engine: a picture takes longer than a frame may.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// A text as it is.
+    Text(String),
+    /// A figure as SVG.
+    Svg(Box<Drawing>),
+    /// A figure as PNG.
+    Png(Box<Drawing>),
+}
+
+impl Content {
+    /// The bytes of the file.
+    ///
+    /// # Errors
+    /// A line that says why a figure cannot be drawn.
+    pub fn bytes(self) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Text(text) => Ok(text.into_bytes()),
+            Self::Svg(drawing) => drawing.svg(),
+            Self::Png(drawing) => drawing.png(),
+        }
+    }
 }
 
 /// News from the engine.

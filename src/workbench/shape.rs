@@ -13,6 +13,7 @@ use crate::mesh::Mesh;
 mod camera;
 mod painter;
 mod picture;
+mod portrait;
 mod solid;
 
 /// From so many rows on the screen has tabs, rules and two lines of footer.

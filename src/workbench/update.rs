@@ -88,6 +88,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             let proposed = leave::proposed(state);
             leave::name(state, &proposed);
         }
+        Action::NextEnding => leave::next_ending(state),
         Action::WriteRecipe => leave::name(state, "eigenselect.toml"),
         Action::Copy => return leave::copy(state),
         Action::Restore => return leave::restore(state),

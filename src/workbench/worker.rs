@@ -223,7 +223,9 @@ impl<'a> Desk<'a> {
                     Message::Command(Command::Set(settings)) => newest = Some(settings),
                     Message::Command(Command::Ask(questions)) => asked = Some(questions),
                     Message::Command(Command::Look(questions)) => self.look(questions),
-                    Message::Command(Command::Write { path, text, overwrite }) => self.write(path, text, overwrite),
+                    Message::Command(Command::Write { path, content, overwrite }) => {
+                        self.write(path, content, overwrite);
+                    }
                     Message::Changed => {
                         self.looks = LOOKS;
                         self.obey(&Command::Rescan);

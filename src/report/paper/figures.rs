@@ -2,15 +2,14 @@
 
 use super::{Head, Rows, Section, Variant};
 use crate::{
-    figure::{Axis, Cell, Dash, Figure, Layer, Mark, Panel, Style},
+    figure::{Dash, Figure, Mark, Style},
     laplacian::Operator,
-    study::{Curve, Mark as Selected},
+    report::figures as drawn,
+    study::Curve,
 };
 
 /// The paper's classes in Figure 4, by words that data sets have for them.
 const SHOWN: [&[&str]; 3] = [&["human"], &["humanoid", "armadillo"], &["bird"]];
-/// Its marks.
-const MARKS: [Mark; 3] = [Mark::Cross, Mark::Circle, Mark::Square];
 
 pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
     let mut sections = vec![section(
@@ -25,7 +24,7 @@ pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
             "figure-4",
             "Figure 4: Eigenvalues that AdaBoost selected",
             &format!("{}: the mean over the class of each selected eigenvalue, against its index.", best.name),
-            selections(head, best),
+            drawn::selections(&head.classes, &shown(head, best), &best.marks, best.first_k.error.train.len(), "λ/max"),
         ));
         sections.push(section(
             "figure-5",
@@ -35,7 +34,7 @@ pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
                  greater its weight Σ α.",
                 best.name
             ),
-            map(head, best),
+            drawn::bands(&head.classes, &best.marks, "λ/max"),
         ));
     }
     sections.push(section(
@@ -56,26 +55,25 @@ pub(super) fn section(stem: &str, heading: &str, words: &str, figure: Figure) ->
     }
 }
 
-/// Colour by operator and normalisation, dashes and marks by the mesh: pairs that belong together look alike.
-fn style(variant: Variant) -> Style {
-    let (hue, mark) = match (variant.operator, variant.normalised) {
-        (Operator::Fem, false) => (0, None),
-        (Operator::Fem, true) => (1, Some(Mark::Circle)),
-        (Operator::Cot, false) => (2, Some(Mark::Triangle)),
-        (Operator::Cot, true) => (3, Some(Mark::Cross)),
-    };
-    Style { hue, dash: if variant.remeshed { Dash::Dashed } else { Dash::Solid }, mark }
+impl Variant {
+    /// How its curve looks. Colour and mark by operator and normalisation, dashes by the mesh: pairs that belong
+    /// together look alike.
+    #[must_use]
+    pub const fn style(self) -> Style {
+        let (hue, mark) = match (self.operator, self.normalised) {
+            (Operator::Fem, false) => (0, None),
+            (Operator::Fem, true) => (1, Some(Mark::Circle)),
+            (Operator::Cot, false) => (2, Some(Mark::Triangle)),
+            (Operator::Cot, true) => (3, Some(Mark::Cross)),
+        };
+        Style { hue, dash: if self.remeshed { Dash::Dashed } else { Dash::Solid }, mark }
+    }
 }
 
 fn curves(rows: &[Rows], label: &str, curve: fn(&Rows) -> &Curve) -> Figure {
-    let line = |rows: &Rows| Layer::Line {
-        name: rows.name.clone(),
-        style: style(rows.spectrum),
-        points: curve(rows).train.iter().enumerate().map(|(at, &value)| [(at + 1) as f64, value]).collect(),
-    };
-    let layers = rows.iter().map(line).collect();
-    let (x, y) = (Axis::log("k"), Axis::linear(label).within(0.0, 1.0));
-    Figure { title: String::new(), panels: vec![Panel { title: String::new(), x, y, layers }], across: 1 }
+    let curved = |rows: &Rows| drawn::curve(rows.name.clone(), rows.spectrum.style(), &curve(rows).train);
+    let panel = drawn::against_k("", label, true, rows.iter().map(curved).collect());
+    Figure { title: String::new(), panels: vec![panel], across: 1 }
 }
 
 /// The classes of Figure 4 where the data set has them, filled up with its first ones.
@@ -92,48 +90,4 @@ fn shown(head: &Head, rows: &Rows) -> Vec<usize> {
     let others: Vec<usize> = others.take(SHOWN.len().saturating_sub(shown.len())).collect();
     shown.extend(others);
     shown
-}
-
-fn selections(head: &Head, rows: &Rows) -> Figure {
-    let layer = |(turn, &class): (usize, &usize)| Layer::Points {
-        name: head.classes[class].clone(),
-        style: Style::marks(turn, MARKS[turn % MARKS.len()]),
-        points: rows.marks[class].iter().map(|mark| [f64::from(mark.index), mark.mean]).collect(),
-    };
-    let shown = shown(head, rows);
-    let all: Vec<Layer> = shown.iter().enumerate().map(layer).collect();
-    let width = rows.first_k.error.train.len() as f64;
-    let panel = |title: String, layers: Vec<Layer>| Panel {
-        title,
-        x: Axis::linear("index k").within(0.0, width.max(1.0)),
-        y: Axis::linear("λ/max").within(0.0, 1.0),
-        layers,
-    };
-    let mut panels: Vec<Panel> =
-        shown.iter().zip(&all).map(|(&class, layer)| panel(head.classes[class].clone(), vec![layer.clone()])).collect();
-    panels.push(panel("together".to_owned(), all));
-    Figure { title: String::new(), panels, across: 2 }
-}
-
-fn map(head: &Head, rows: &Rows) -> Figure {
-    let column = |(class, marks): (usize, &Vec<Selected>)| {
-        let most = marks.iter().map(|mark| mark.alpha).fold(0.0, f64::max);
-        let cell = move |mark: &Selected| Cell {
-            x: [class as f64 - 0.38, class as f64 + 0.38],
-            y: [mark.low, mark.high],
-            weight: if most > 0.0 { mark.alpha / most } else { 0.0 },
-        };
-        let mut cells: Vec<Cell> = marks.iter().map(cell).collect();
-        // The weightiest in front.
-        cells.sort_by(|a, b| a.weight.total_cmp(&b.weight));
-        cells
-    };
-    let cells = rows.marks.iter().enumerate().flat_map(column).collect();
-    let panel = Panel {
-        title: String::new(),
-        x: Axis::names("", head.classes.to_vec()),
-        y: Axis::linear("λ/max").within(0.0, 1.0),
-        layers: vec![Layer::Map { cells }],
-    };
-    Figure { title: String::new(), panels: vec![panel], across: 1 }
 }

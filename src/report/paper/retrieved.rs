@@ -5,7 +5,7 @@ use super::{
     tables::{maybe, number},
 };
 use crate::{
-    figure::{Axis, Dash, Figure, Layer, Mark, Panel, Style},
+    report::figures as drawn,
     study::{Cell, Reading, Retrieved, Scheme, Table},
 };
 
@@ -14,11 +14,6 @@ pub(super) fn sections(retrieved: &[Retrieved]) -> Vec<Section> {
         return Vec::new();
     }
     vec![table_5(retrieved), figure_7(retrieved)]
-}
-
-fn name(scheme: Scheme) -> String {
-    let Scheme { gate, pick, kept } = scheme;
-    if kept == 0 { format!("– / {}", pick.name()) } else { format!("{} / {} / {kept}", gate.name(), pick.name()) }
 }
 
 fn table_5(retrieved: &[Retrieved]) -> Section {
@@ -81,32 +76,7 @@ fn table_5(retrieved: &[Retrieved]) -> Section {
     }
 }
 
-/// Looks of the seven curves in the paper's order.
-const LOOKS: [Style; 7] = [
-    Style { hue: 0, dash: Dash::Solid, mark: Some(Mark::Circle) },
-    Style { hue: 1, dash: Dash::Solid, mark: Some(Mark::Square) },
-    Style { hue: 2, dash: Dash::Solid, mark: Some(Mark::Triangle) },
-    Style { hue: 3, dash: Dash::Solid, mark: Some(Mark::Diamond) },
-    Style { hue: 1, dash: Dash::Dashed, mark: None },
-    Style { hue: 2, dash: Dash::DashDot, mark: None },
-    Style { hue: 0, dash: Dash::Dotted, mark: None },
-];
-
 fn figure_7(retrieved: &[Retrieved]) -> Section {
-    let schemes = Scheme::figure_7();
-    let lines = schemes.iter().zip(LOOKS).filter_map(|(scheme, style)| {
-        let found = retrieved.iter().find(|found| found.scheme == *scheme)?;
-        let precision = if found.precision.query.is_empty() { &found.precision.train } else { &found.precision.query };
-        let steps = precision.len() as f64;
-        let points = precision.iter().enumerate().map(|(at, &value)| [(at + 1) as f64 / steps, value]).collect();
-        Some(Layer::Line { name: name(*scheme), style, points })
-    });
-    let panel = Panel {
-        title: String::new(),
-        x: Axis::linear("recall").within(0.0, 1.0),
-        y: Axis::linear("precision").within(0.0, 1.0),
-        layers: lines.collect(),
-    };
     figures::section(
         "figure-7",
         "Figure 7: Precision and recall",
@@ -115,6 +85,6 @@ fn figure_7(retrieved: &[Retrieved]) -> Section {
              counts with a precision of 0.",
             Variant::BEST.name()
         ),
-        Figure { title: String::new(), panels: vec![panel], across: 1 },
+        drawn::precision(retrieved),
     )
 }

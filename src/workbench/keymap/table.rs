@@ -76,7 +76,7 @@ fn in_views() -> Vec<Row> {
             "find",
         ),
         (Views, vec![(Char('/'), Action::Find)], "", "list the models with a text in name or class", ""),
-        (Views, vec![(Char('W'), Action::WriteView)], "", "write what the view shows: CSV, JSON, text", ""),
+        (Views, vec![(Char('W'), Action::WriteView)], "", "write what the view shows: a figure or its table", ""),
         (Views, vec![(Char('S'), Action::WriteRecipe)], "", "write the session as a recipe", ""),
         (Views, vec![(Char('C'), Action::Copy)], "", "copy what the view shows", ""),
         (Views, vec![(Char('L'), Action::Restore)], "", "take up the last session of the data set", ""),
@@ -214,6 +214,7 @@ fn elsewhere() -> Vec<Row> {
     vec![
         (Entry, vec![(Enter, Action::Commit)], "", "take what was typed", "take it"),
         (Entry, vec![(Esc, Action::Close)], "", "leave everything as it was", "leave it"),
+        (Entry, vec![(Key::Tab, Action::NextEnding)], "", "another kind of file: csv, json, txt, svg, png", ""),
         (Entry, vec![(Key::Backspace, Action::Erase)], "", "erase a character", ""),
         (Entry, vec![(Ctrl('u'), Action::EraseAll)], "", "erase everything before the caret", ""),
         (Entry, vec![(Left, Action::Left), (Right, Action::Right)], "← →", "move the caret", ""),

@@ -107,6 +107,7 @@ fn every_action_of_a_key_is_bound() {
         Action::ToggleAlone,
         Action::TurnFunction(1),
         Action::WriteView,
+        Action::NextEnding,
         Action::WriteRecipe,
         Action::Copy,
         Action::Restore,

@@ -5,7 +5,7 @@ use std::{io::Write as _, path::PathBuf, sync::Arc};
 
 use super::{
     super::{
-        Update,
+        Content, Update,
         trial::{self, Recall},
     },
     Desk, Message,
@@ -52,10 +52,17 @@ impl Desk<'_> {
         }
     }
 
-    /// Writes a file on a thread of its own: the disk may be a slow one.
-    pub(super) fn write(&mut self, path: PathBuf, text: String, overwrite: bool) {
+    /// Writes a file on a thread of its own: the disk may be a slow one, and a figure is drawn first.
+    pub(super) fn write(&mut self, path: PathBuf, content: Content, overwrite: bool) {
         let outbox = self.outbox.clone();
         let begun = std::thread::Builder::new().name("writer".into()).spawn(move || {
+            let bytes = match content.bytes() {
+                Ok(bytes) => bytes,
+                Err(reason) => {
+                    let _ = outbox.send(Message::Written(path, Err(reason)));
+                    return;
+                }
+            };
             let mut options = std::fs::OpenOptions::new();
             options.write(true);
             if overwrite {
@@ -63,7 +70,7 @@ impl Desk<'_> {
             } else {
                 options.create_new(true)
             };
-            let written = options.open(&path).and_then(|mut file| file.write_all(text.as_bytes()));
+            let written = options.open(&path).and_then(|mut file| file.write_all(&bytes));
             let outcome = written.map_err(|error| match error.kind() {
                 std::io::ErrorKind::AlreadyExists => "there is such a file already; choose another name".to_owned(),
                 _ => format!("cannot be written: {error}"),
