@@ -23,6 +23,7 @@ use crate::{
     workbench::{Command, State, Update, recipe::Loaded, shape::Style, worker::Worker},
 };
 
+mod canvas;
 mod caps;
 mod ending;
 mod events;

@@ -1,20 +1,18 @@
 //! What is drawn on: a frame becomes one write.
 
-use std::{
-    cell::RefCell,
-    io::{self, Write},
-    rc::Rc,
-};
+use std::io::{self, Write as _};
 
 use ratatui::crossterm::terminal;
 use ratatui::{
     Terminal,
-    backend::CrosstermBackend,
-    layout::{Position, Rect},
+    layout::{Position, Rect, Size},
 };
 use rustix::process::{Signal, kill_current_process_group};
 
-use super::guard::{self, Guard};
+use super::{
+    canvas::{Canvas, Pending},
+    guard::{self, Guard},
+};
 use crate::{
     figure::base64,
     ui::{self, Look},
@@ -37,25 +35,10 @@ pub(super) trait Surface {
     fn resume(&mut self) -> io::Result<()>;
 }
 
-/// What is to be written, until it is written in one piece.
-#[derive(Debug, Default, Clone)]
-struct Pending(Rc<RefCell<Vec<u8>>>);
-
-impl Write for Pending {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0.borrow_mut().extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
 /// The terminal's alternate screen.
 pub(super) struct Screen {
     guard: Guard,
-    terminal: Terminal<CrosstermBackend<Pending>>,
+    terminal: Terminal<Canvas>,
     pending: Pending,
     look: Look,
 }
@@ -68,7 +51,8 @@ const END: &[u8] = b"\x1b[?2026l";
 impl Screen {
     pub(super) fn new(guard: Guard, look: Look) -> io::Result<Self> {
         let pending = Pending::default();
-        let terminal = Terminal::new(CrosstermBackend::new(pending.clone()))?;
+        let measure = || terminal::size().map(Size::from);
+        let terminal = Terminal::new(Canvas::new(Pending::clone(&pending), Box::new(measure))?)?;
         Ok(Self { guard, terminal, pending, look })
     }
 
@@ -86,9 +70,8 @@ impl Surface for Screen {
     fn draw(&mut self, state: &State) -> io::Result<()> {
         let look = self.look;
         self.terminal.draw(|frame| ui::render(state, look, frame))?;
-        let frame = std::mem::take(&mut *self.pending.0.borrow_mut());
-        // Every run of changed cells begins with a move of the cursor; a frame without one changes nothing.
-        if frame.contains(&b'H') {
+        let frame = std::mem::take(&mut *self.pending.borrow_mut());
+        if !frame.is_empty() {
             let whole = [BEGIN, &frame, END].concat();
             let mut out = io::stdout().lock();
             out.write_all(&whole)?;
