@@ -26,6 +26,7 @@ pub(crate) use self::{
 };
 
 mod answer;
+mod costs;
 mod db;
 mod examined;
 mod host;

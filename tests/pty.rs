@@ -68,7 +68,7 @@ fn a_second_start_finds_the_spectra_and_shows_them_at_once() {
         let mut seat = Seat::at_tui(&arguments);
         seat.until_settled();
         seat.press("5");
-        seat.until_shown("ran  mem");
+        seat.until_shown("ran mem");
         let row = seat.text().lines().find(|line| line.contains("● spectrum")).unwrap().to_owned();
         // Ran, from memory, from disk.
         let counts = row.split("spectrum").nth(1).unwrap().split_whitespace().take(3).collect::<Vec<_>>().join(" ");

@@ -8,6 +8,8 @@ mod figures;
 mod replies;
 #[path = "screen/sample.rs"]
 mod sample;
+#[path = "screen/themes.rs"]
+mod themes;
 
 use std::{
     sync::Arc,
@@ -364,11 +366,27 @@ fn models_that_failed() {
 
 #[test]
 fn names_cannot_do_anything_to_the_terminal() {
+    let bad = |c: char| c.is_control() || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}');
     for view in View::ALL {
-        let buffer = buffer(&shown(sample::state(sample::hostile()), view), Look::default(), SMALL);
-        for cell in &buffer.content {
-            let bad = |c: char| c.is_control() || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}');
-            assert!(!cell.symbol().chars().any(bad), "{:?} in {}", cell.symbol(), view.name());
+        for size in [NARROW, SMALL, MEDIUM, LARGE] {
+            let mut state = sample::state(sample::hostile());
+            update(&mut state, Action::Resize(size.0, size.1));
+            let state = shown(state, view);
+            let mut opened = state.clone();
+            update(&mut opened, Action::NextConfusion);
+            update(&mut opened, Action::Open);
+            let mut finding = state.clone();
+            update(&mut finding, Action::Palette);
+            "mod".chars().for_each(|c| drop(update(&mut finding, Action::Insert(c))));
+            for state in [state, replies::served(opened), finding] {
+                for look in [Look::default(), Look { ascii: true, ..Look::default() }] {
+                    let buffer = buffer(&state, look, size);
+                    for cell in &buffer.content {
+                        assert!(!cell.symbol().chars().any(bad), "{:?} in {}", cell.symbol(), view.name());
+                    }
+                    assert!(!look.ascii || text(&buffer).is_ascii(), "{}", view.name());
+                }
+            }
         }
     }
     compare("Models-hostile", &drawn(&shown(sample::state(sample::hostile()), View::Models), SMALL));

@@ -94,6 +94,8 @@ pub struct StageRow {
     pub failed: usize,
     /// Processor time of the values computed and read, seconds, over all threads.
     pub seconds: f64,
+    /// What the values that were in memory or on disk cost when they were made, seconds, as far as that is known.
+    pub saved: f64,
 }
 
 /// How far one model has come.
@@ -114,7 +116,7 @@ pub enum ModelState {
         source: Source,
         /// Eigenvalues there are (at least as many as asked for, unless the mesh has fewer).
         count: usize,
-        /// How long the solve took when it ran, seconds.
+        /// How long the solve took, seconds, in this session or an earlier one; 0 where that is not known.
         seconds: f64,
     },
     /// It takes no part, and why: unreadable, refused, not solvable, or too few eigenvalues for kmax.
@@ -217,6 +219,10 @@ pub struct Answer {
     pub marks: Part<Vec<Vec<Mark>>>,
     /// Tables 1 to 4.
     pub tables: Part<Vec<Table>>,
+    /// What leaves models out although nothing is wrong, in one line: they have fewer than kmax eigenvalues.
+    pub short: Option<String>,
+    /// Bytes of memory that the process has, where the system says so.
+    pub memory: Option<u64>,
     /// What the user should know: passed-over files, a store that cannot be written. Newest last.
     pub warnings: Arc<Vec<String>>,
 }

@@ -109,14 +109,19 @@ impl Host {
             // Without a receiver the host is being dropped.
             let _ = sender.send(news);
         });
-        Self { news: Some(news), ..Self::with_listener(config, listener) }
+        Self { news: Some(news), ..Self::open(config, false, listener) }
     }
 
-    /// A host whose pool tells `listener`; the news must come back through [`Host::hear`].
+    /// A host behind a screen: its pool leaves the processor to the screen, and tells `listener`; the news must come
+    /// back through [`Host::hear`].
     pub(crate) fn with_listener(config: Config, listener: Listener) -> Self {
+        Self::open(config, true, listener)
+    }
+
+    fn open(config: Config, polite: bool, listener: Listener) -> Self {
         let Config { data, settings, store, threads } = config;
         let library = Library::open(store, Trace::default(), &data.root);
-        Self::over(library, data, settings, threads, listener)
+        Self::over(library, data, settings, (threads, polite), listener)
     }
 
     /// A host on the same models for other parameters: it shares all that is costly, and has a database, a pool and an
@@ -127,10 +132,19 @@ impl Host {
             let _ = sender.send(news);
         });
         let library = self.library.apart();
-        Self { news: Some(news), ..Self::over(library, self.data.clone(), settings, self.pool.size(), listener) }
+        Self {
+            news: Some(news),
+            ..Self::over(library, self.data.clone(), settings, (self.pool.size(), true), listener)
+        }
     }
 
-    fn over(library: Library, data: DataSet, settings: Settings, threads: usize, listener: Listener) -> Self {
+    fn over(
+        library: Library,
+        data: DataSet,
+        settings: Settings,
+        (threads, polite): (usize, bool),
+        listener: Listener,
+    ) -> Self {
         let database = Database::new(library.clone());
         let classes = Arc::new(data.classes.clone());
         Knobs::new(
@@ -148,7 +162,7 @@ impl Host {
             settings.sel,
             Arc::clone(&classes),
         );
-        let pool = Pool::start(threads, library.clone(), listener);
+        let pool = Pool::start(threads, polite, library.clone(), listener);
         let mut host = Self {
             database,
             library,
@@ -380,7 +394,7 @@ impl Host {
                 row.found = Some(found.map(|mut found| {
                     // What the pool found in memory was come by earlier in this session.
                     if let (Source::Memory, Some(Ok(before))) = (found.source, &row.found) {
-                        (found.source, found.seconds) = (before.found.source, before.found.seconds);
+                        found.source = before.found.source;
                     }
                     let eigenvalues = Arc::new(found.spectrum.eigenvalues());
                     Solved { found, eigenvalues }

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Problem, Source, Stage,
+    costs::Costs,
     stamp::{ContentHash, Stamp},
     trace::Trace,
 };
@@ -50,7 +51,7 @@ pub(crate) struct FileAt<'a> {
 pub(crate) struct Found {
     pub(crate) spectrum: Arc<Spectrum>,
     pub(crate) source: Source,
-    /// Seconds the solve took; 0 when none ran.
+    /// Seconds the solve took, whenever it ran; 0 where that is not known.
     pub(crate) seconds: f64,
 }
 
@@ -93,6 +94,7 @@ struct Inner {
     solved: Condvar,
     store: Store,
     index: Key,
+    costs: Costs,
 }
 
 impl Library {
@@ -102,7 +104,8 @@ impl Library {
         let contents = store.get::<Vec<(PathBuf, Stamp, ContentHash)>>(&index).unwrap_or_default();
         let contents = contents.into_iter().map(|(path, stamp, content)| (path, (stamp, content))).collect();
         let memory = Mutex::new(Memory { contents, ..Memory::default() });
-        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, index }), trace)
+        let costs = Costs::open(&store, root);
+        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, index, costs }), trace)
     }
 
     /// The same library with an account of its own: work for others is not counted here.
@@ -116,6 +119,11 @@ impl Library {
 
     pub(crate) fn trace(&self) -> &Trace {
         &self.1
+    }
+
+    /// What values cost when they were made.
+    pub(super) fn costs(&self) -> &Costs {
+        &self.0.costs
     }
 
     pub(crate) fn store(&self) -> &Store {
@@ -144,6 +152,7 @@ impl Library {
             memory.fresh.insert(path.to_owned(), (stamp, content));
         }
         drop(memory);
+        self.costs().made(Stage::Content, start.elapsed());
         self.trace().made(Stage::Content, Source::Ran, start.elapsed());
         Ok(content)
     }
@@ -153,8 +162,9 @@ impl Library {
         std::mem::take(&mut self.memory().fresh).into_keys().collect()
     }
 
-    /// Writes the content hashes for the next session, if there are new ones.
+    /// Writes the content hashes and what values cost for the next session, if there is something new.
     pub(crate) fn save_contents(&self) {
+        self.costs().save(&self.0.store);
         let mut memory = self.memory();
         if std::mem::take(&mut memory.contents_unsaved) {
             let mut list: Vec<_> =
@@ -185,6 +195,9 @@ impl Library {
         // Only what the bytes decide is remembered; that a file has gone is not.
         if !matches!(&facts, Err(failure) if !failure.decided) {
             self.memory().facts.insert(name, facts.clone().map_err(|failure| failure.reason));
+        }
+        if source == Source::Ran {
+            self.costs().made(Stage::Survey, start.elapsed());
         }
         self.trace().made(Stage::Survey, source, start.elapsed());
         facts
@@ -217,7 +230,7 @@ impl Library {
         let mut memory = self.memory();
         loop {
             if let Some(found) = memory.spectra.get(&name).filter(|found| suffices(&found.spectrum, count)) {
-                return Ok(Some(Found { source: Source::Memory, seconds: 0.0, ..found.clone() }));
+                return Ok(Some(Found { source: Source::Memory, ..found.clone() }));
             }
             if let Some(reason) = memory.refused.get(&name) {
                 return Err(Missing::Failed(reason.clone()));
@@ -247,7 +260,11 @@ impl Library {
         let key = key_of("spectrum");
         let stored = self.0.store.get::<Spectrum>(&key);
         if let Some(spectrum) = stored.as_ref().filter(|spectrum| suffices(spectrum, count)) {
-            let found = Found { spectrum: Arc::new(spectrum.clone()), source: Source::Disk, seconds: 0.0 };
+            let found = Found {
+                spectrum: Arc::new(spectrum.clone()),
+                source: Source::Disk,
+                seconds: self.costs().of_spectrum(&key),
+            };
             self.memory().spectra.insert(name, found.clone());
             self.trace().made(Stage::Spectrum, Source::Disk, start.elapsed());
             return Ok(found);
@@ -266,8 +283,8 @@ impl Library {
                     let longer = stored.as_ref().is_none_or(|stored| stored.count() < spectrum.count());
                     longer.then(|| spectrum.clone())
                 });
-                let found =
-                    Found { spectrum: Arc::new(spectrum), source: Source::Ran, seconds: start.elapsed().as_secs_f64() };
+                let seconds = self.costs().solved(&key, start.elapsed().as_secs_f64(), !known.is_empty());
+                let found = Found { spectrum: Arc::new(spectrum), source: Source::Ran, seconds };
                 let mut memory = self.memory();
                 memory.begun.remove(&name);
                 memory.spectra.insert(name, found.clone());

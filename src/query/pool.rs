@@ -22,6 +22,10 @@ use super::{
 };
 use crate::{mesh::Format, watch::Watch};
 
+/// The nice value of polite threads: of a core they share with the screen's thread they get a tenth.
+#[cfg(target_os = "linux")]
+const NICE: i32 = 10;
+
 /// One model's spectrum, from its file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Job {
@@ -88,8 +92,9 @@ pub(crate) struct Pool {
 }
 
 impl Pool {
-    /// Starts `threads` threads.
-    pub(crate) fn start(threads: usize, library: Library, listener: Listener) -> Self {
+    /// Starts `threads` threads. Where somebody sits in front of the screen they are `polite`: they leave the
+    /// processor to whoever has to answer at once.
+    pub(crate) fn start(threads: usize, polite: bool, library: Library, listener: Listener) -> Self {
         let threads = threads.max(1);
         let mut wanted = Wanted::default();
         wanted.running.resize_with(threads, || None);
@@ -97,7 +102,13 @@ impl Pool {
         let threads = (0..threads)
             .filter_map(|thread| {
                 let shared = Arc::clone(&shared);
-                std::thread::Builder::new().name(format!("solver-{thread}")).spawn(move || work(&shared, thread)).ok()
+                let body = move || {
+                    if polite {
+                        give_way();
+                    }
+                    work(&shared, thread);
+                };
+                std::thread::Builder::new().name(format!("solver-{thread}")).spawn(body).ok()
             })
             .collect();
         Self { shared, threads }
@@ -140,6 +151,16 @@ impl Drop for Pool {
         for thread in self.threads.drain(..) {
             let _ = thread.join();
         }
+    }
+}
+
+/// Lowers this thread's priority. On Linux a thread has a nice value of its own; elsewhere it would be the whole
+/// process that gives way, so there nothing is done.
+fn give_way() {
+    #[cfg(target_os = "linux")]
+    {
+        // Refused by nobody; and were it, the thread would only be less polite.
+        let _ = rustix::process::setpriority_process(None, NICE);
     }
 }
 

@@ -57,11 +57,15 @@ pub(crate) struct Tally {
     pub(crate) ran: usize,
     pub(crate) disk: usize,
     pub(crate) busy: Duration,
+    /// Of this, the time of what ran.
+    pub(crate) ran_busy: Duration,
 }
 
 #[derive(Debug, Default)]
 struct Record {
     tallies: BTreeMap<Stage, Tally>,
+    /// What one value of a stage cost when the stage last ran; kept when a new account is started.
+    costs: BTreeMap<Stage, Duration>,
     executed: Vec<Query>,
 }
 
@@ -79,11 +83,22 @@ impl Trace {
         let mut record = self.record();
         let tally = record.tallies.entry(stage).or_default();
         match source {
-            Source::Ran => tally.ran += 1,
+            Source::Ran => {
+                tally.ran += 1;
+                tally.ran_busy += busy;
+            }
             Source::Disk => tally.disk += 1,
             Source::Memory => {}
         }
         tally.busy += busy;
+        if source == Source::Ran {
+            record.costs.insert(stage, busy);
+        }
+    }
+
+    /// What one value of a stage cost when the stage last ran; nothing where it never did.
+    pub(crate) fn cost(&self, stage: Stage) -> Duration {
+        self.record().costs.get(&stage).copied().unwrap_or_default()
     }
 
     /// Notes that the body of a tracked function ran to its end.
@@ -116,7 +131,8 @@ impl Trace {
 
     /// Starts a new account: after a change of a parameter or a file.
     pub(crate) fn restart(&self) {
-        *self.record() = Record::default();
+        let mut record = self.record();
+        *record = Record { costs: std::mem::take(&mut record.costs), ..Record::default() };
     }
 
     /// The tracked functions whose bodies ran since the account was started, in the order in which they ended.

@@ -83,6 +83,8 @@ pub(super) fn answer() -> Answer {
         classes: Arc::new(["ant", "cup", "ring|x"].map(str::to_owned).to_vec()),
         members: Arc::new((0..7).collect()),
         progress: Progress { ready: 7, out: 1, total: 8, rate: None, left: None },
+        short: None,
+        memory: None,
         stages: vec![StageRow {
             stage: Stage::Spectrum,
             ran: 6,
@@ -91,6 +93,7 @@ pub(super) fn answer() -> Answer {
             stale: 0,
             failed: 1,
             seconds: 1.5,
+            saved: 0.0,
         }],
         first_k: part(FirstK { error: curve(0.2, 1.0, 0.3), adr: curve(0.8, -0.5, 0.7), best_error: 5, best_adr: 5 }),
         climb_error: part(climbed(

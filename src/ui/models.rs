@@ -159,8 +159,9 @@ fn standing(model: &ModelRow) -> (String, Role) {
     match &model.state {
         ModelState::Waiting => ("waiting".to_owned(), Role::Faint),
         ModelState::Working { done, total } => (format!("{done}/{total}"), Role::Warn),
-        ModelState::Ready { source: Source::Ran, seconds, .. } => {
-            (format!("ran    {:>6}", number::seconds(*seconds)), Role::Plain)
+        // A time of an earlier session is known for most.
+        ModelState::Ready { source: from, seconds, .. } if *seconds > 0.0 => {
+            (format!("{:<6} {:>6}", source(*from), number::seconds(*seconds)), Role::Plain)
         }
         ModelState::Ready { source: from, .. } => (source(*from).to_owned(), Role::Plain),
         ModelState::Out { reason } => (reason.clone(), Role::Bad),
@@ -224,8 +225,10 @@ fn summary(model: &ModelRow, long: bool) -> String {
         ModelState::Ready { source: from, count, seconds } => {
             let how = match from {
                 Source::Ran => format!("in {}", number::seconds(*seconds)),
-                Source::Memory => "from memory".to_owned(),
-                Source::Disk => "from disk".to_owned(),
+                from if long && *seconds > 0.0 => {
+                    format!("from {}, solved in {}", source(*from), number::seconds(*seconds))
+                }
+                from => format!("from {}", source(*from)),
             };
             parts.push(format!("{count} {} {how}", if long { "eigenvalues" } else { "λ" }));
         }

@@ -201,7 +201,7 @@ fn neighbours(
     pane.put(name_at, 0, "nearest", Role::Faint);
     pane.put(class_at, 0, "class", Role::Faint);
     pane.put_right(distance_end, 0, "distance", Role::Faint);
-    let scale = found.found.get((first + rows).min(found.found.len()) - 1).map_or(1.0, |last| last.distance);
+    let scale = found.found.iter().take(first + rows).next_back().map_or(1.0, |last| last.distance);
     for (y, (place, neighbour)) in (1..).zip(found.found.iter().enumerate().skip(first).take(rows)) {
         let own = neighbour.class == found.class;
         let (mark, role) = if own { ("✓", Role::Good) } else { ("×", Role::Bad) };

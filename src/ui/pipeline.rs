@@ -1,20 +1,26 @@
 //! The pipeline as the database ran it since the last change.
 //!
 //! ```text
-//!  stage               ran memory   disk  stale failed    time
-//!  ● content hash        0    380      0      0      0    0 ms
-//!  ◐ spectrum           12      0    202    166      0   4.1 s
-//!  ● features          214      0      0      0      0    3 ms
-//!  ├ ● first-k           1      0      0      0      0    9 ms ‹
-//!  ├ ● HCBw ε …
-//!  └ ● AdaBoost
-//!  ○ tables
+//!  stage               ran memory   disk  stale failed    time   saved
+//!  ● content hash        0    380      0      0      0    0 ms  214 ms
+//! ┃◐ spectrum           12      0    202    166      0   4.1 s   1m02s
+//! ┃● features ‹        214      0      0      0      0    3 ms       ·
+//! ┃├ ● first-k ‹         1      0      0      0      0    9 ms       ·
+//! ┃├ ● HCBw ε …
+//! ┃└ ● AdaBoost
+//! ┃○ tables
+//!
+//! ┃ last change: kmax 500 → 600
+//!  ‹ what normalisation runs again or slices anew
+//!  4.1 s spent, 1m02s saved   214 MB in use
 //!
 //!  Warnings
 //!  ! cow.off: not a mesh
 //! ```
 //!
-//! The stages that the chosen parameter would run again carry `‹`.
+//! The path of the last change stands at `┃`; the stages that the chosen parameter would run again carry `‹`.
+
+use ratatui::layout::Rect;
 
 use super::{
     heading::{Note, heading},
@@ -25,15 +31,17 @@ use super::{
 };
 use crate::{
     query::{Stage, StageRow},
-    workbench::{State, parameters},
+    workbench::{State, View, parameters},
 };
 
 /// Columns of the tree.
 const NAME: u16 = 15;
-/// Columns of each number: ran, memory, disk, stale, failed, time.
-const NARROW: [u16; 6] = [5, 5, 5, 6, 7, 7];
+/// Columns of each number: ran, memory, disk, stale, failed, time, saved.
+const NARROW: [u16; 7] = [4, 4, 5, 5, 4, 7, 7];
 /// The same where there is room.
-const WIDE: [u16; 6] = [8, 8, 8, 8, 8, 10];
+const WIDE: [u16; 7] = [8, 8, 8, 8, 8, 10, 10];
+/// What the last change runs again stands at this.
+const PATH: &str = "┃";
 
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
@@ -41,10 +49,16 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let rows = state.answer.stages.len() as u16;
     table(state, &mut pane.part(pane::cut_top(&mut rest, rows + 1)));
     if rest.height >= 3 {
-        let line = pane::cut_top(&mut rest, 2);
-        explain(state, &mut pane.part(line));
+        let lines = said(state, rest.width);
+        let gap = u16::from(rest.height as usize > lines.len() + 3);
+        pane::cut_top(&mut rest, gap);
+        for (mark, line, role) in lines {
+            let mut pane = pane.part(pane::cut_top(&mut rest, 1));
+            pane.put(0, 0, mark, Role::Train);
+            pane.put(2, 0, &line, role);
+        }
     }
-    if rest.height > 3 {
+    if rest.height > 2 {
         pane::cut_top(&mut rest, 1);
     }
     warnings(state, &mut pane.part(rest));
@@ -81,39 +95,69 @@ fn table(state: &State, pane: &mut Pane<'_>) {
     let columns = if wide { WIDE } else { NARROW };
     let end = |column: usize| NAME + columns[..=column].iter().sum::<u16>();
     pane.put(1, 0, "stage", Role::Faint);
-    let heads = ["ran", if wide { "memory" } else { "mem" }, "disk", "stale", "failed", "time"];
+    let (memory, stale, failed) = if wide { ("memory", "stale", "failed") } else { ("mem", "todo", "out") };
+    let heads = ["ran", memory, "disk", stale, failed, "time", "saved"];
+    let lit = state.changed.as_ref().map_or(&[][..], |change| &change.stages);
+    let cursor = (state.view == View::Pipeline).then_some(state.stage);
     for (column, head) in heads.into_iter().enumerate() {
         pane.put_right(end(column), 0, head, Role::Faint);
     }
     for (y, row) in (1..).zip(&state.answer.stages) {
         let (mark, role) = mark(state, row);
-        pane.spans(
+        let changed = lit.contains(&row.stage);
+        let name = if changed { Role::Strong } else { Role::Plain };
+        if changed {
+            pane.put(0, y, PATH, Role::Train);
+        }
+        let x = pane.spans(
             1,
             y,
-            [(branch(row.stage), Role::Faint), (mark, role), (" ", Role::Plain), (row.stage.name(), Role::Plain)],
+            [(branch(row.stage), Role::Faint), (mark, role), (" ", Role::Plain), (row.stage.name(), name)],
         );
+        if parameters::invalidates(state.parameter).contains(&row.stage) {
+            pane.put(x, y, if x + 1 < NAME { " ‹" } else { "‹" }, Role::Strong);
+        }
         let roles = [Role::Strong, Role::Plain, Role::Plain, Role::Warn, Role::Bad];
         let counts = [row.ran, row.memory, row.disk, row.stale, row.failed];
         for (column, (count, role)) in counts.into_iter().zip(roles).enumerate() {
             let (shown, role) = if count == 0 { ("·".to_owned(), Role::Faint) } else { (count.to_string(), role) };
             pane.put_right(end(column), y, &shown, role);
         }
-        let time = if row.ran + row.disk == 0 { "·".to_owned() } else { number::seconds(row.seconds) };
-        pane.put_right(end(5), y, &time, Role::Plain);
-        if parameters::invalidates(state.parameter).contains(&row.stage) {
-            pane.put(end(5), y, if wide { "  ‹" } else { "‹" }, Role::Strong);
+        let none = || ("·".to_owned(), Role::Faint);
+        let spent = if row.ran + row.disk == 0 { none() } else { (number::seconds(row.seconds), Role::Plain) };
+        let saved = if row.saved > 0.0 { (number::seconds(row.saved), Role::Good) } else { none() };
+        pane.put_right(end(5), y, &spent.0, spent.1);
+        pane.put_right(end(6), y, &saved.0, saved.1);
+        if cursor == Some(y as usize - 1) {
+            let style = pane.style(Role::Chosen);
+            pane.paint(Rect::new(1, y, pane.width().saturating_sub(1), 1), style);
         }
     }
 }
 
-fn explain(state: &State, pane: &mut Pane<'_>) {
+/// What the table's marks mean, what the work cost, and which models are out although nothing is wrong: each line with
+/// its mark.
+fn said(state: &State, width: u16) -> Vec<(&'static str, String, Role)> {
+    let room = (width as usize).saturating_sub(3);
     let parameter = state.parameter;
-    let text = if parameters::invalidates(parameter).is_empty() {
+    let again = if parameters::invalidates(parameter).is_empty() {
         format!("{} runs nothing again", parameter.name())
     } else {
         format!("‹ what {} runs again or slices anew", parameter.name())
     };
-    pane.put(1, 1, &text::fit(&text, (pane.width() as usize).saturating_sub(1)), Role::Faint);
+    let sum = |of: fn(&StageRow) -> f64| state.answer.stages.iter().map(of).filter(|s| s.is_finite()).sum::<f64>();
+    let mut spent = format!("{} spent", number::seconds(sum(|row| row.seconds)));
+    let saved = sum(|row| row.saved);
+    if saved > 0.0 {
+        spent = format!("{spent}, {} saved", number::seconds(saved));
+    }
+    if let Some(memory) = state.answer.memory {
+        spent = format!("{spent} · {:.0} MB in use", memory as f64 / 1e6);
+    }
+    let changed = state.changed.as_ref().map(|change| (PATH, format!("last change: {}", change.what), Role::Plain));
+    let short = state.answer.short.iter().flat_map(|short| text::wrap(short, room)).map(|line| ("", line, Role::Plain));
+    let lines = changed.into_iter().chain([("", again, Role::Faint), ("", spent, Role::Plain)]).chain(short);
+    lines.map(|(mark, line, role)| (mark, text::fit(&line, room), role)).collect()
 }
 
 fn warnings(state: &State, pane: &mut Pane<'_>) {

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Answered, Entry, Only, Purpose, State, Sweep, View, Why, pins, shape::Camera, update, why::Matrix,
+    Action, Answered, Entry, Figure, Filter, Only, Purpose, Sort, State, Sweep, View, Why, pins, shape::Camera, update,
+    why::Matrix,
 };
 use crate::{
-    query::{Finding, Parameter, Question},
+    query::{Finding, Parameter, Question, Stage},
     study::Method,
 };
 
@@ -174,8 +175,42 @@ fn open(state: &mut State) {
             update::show(state, View::Neighbours);
         }
         View::Neighbours => open_neighbour(state),
+        View::Pipeline => open_stage(state),
         _ => {}
     }
+}
+
+/// What a stage makes: the models behind the first stages, the slowest first or those that are not there; else the view
+/// of its values.
+fn open_stage(state: &mut State) {
+    let Some(row) = state.answer.stages.get(state.stage).copied() else { return };
+    remember(state);
+    let view = match row.stage {
+        Stage::Content | Stage::Survey | Stage::Spectrum => {
+            change(state, |list| {
+                (list.only, list.needle) = Default::default();
+                list.filter = match (row.failed, row.stale) {
+                    (1.., _) => Filter::Out,
+                    (0, 1..) => Filter::Working,
+                    (0, 0) => Filter::All,
+                };
+                list.sort = Sort::Time;
+            });
+            state.models.at = 0;
+            View::Models
+        }
+        Stage::FirstK => View::Curves,
+        Stage::Tables => View::Tables,
+        Stage::Features | Stage::ClimbError | Stage::ClimbAdr | Stage::Boost => {
+            state.figure = match row.stage {
+                Stage::Features => Figure::Shared,
+                Stage::Boost => Figure::Map,
+                _ => Figure::Climb,
+            };
+            View::Selection
+        }
+    };
+    update::show(state, view);
 }
 
 fn open_cell(state: &mut State) {

@@ -115,6 +115,35 @@ pub enum Purpose {
     File,
 }
 
+/// The last change of what the study is made of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Change {
+    /// In words.
+    pub what: String,
+    /// The stages that it runs again.
+    pub stages: Vec<Stage>,
+}
+
+impl Change {
+    /// From some settings to others.
+    #[must_use]
+    pub fn between(before: &Settings, after: &Settings) -> Self {
+        let changed: Vec<Parameter> = Parameter::ALL.into_iter().filter(|p| before.get(*p) != after.get(*p)).collect();
+        let word = |p: &Parameter| format!("{} {} → {}", p.name(), before.get(*p), after.get(*p));
+        let runs = |stage: &Stage| changed.iter().any(|p| parameters::invalidates(*p).contains(stage));
+        Self {
+            what: changed.iter().map(word).collect::<Vec<_>>().join(", "),
+            stages: Stage::ALL.into_iter().filter(runs).collect(),
+        }
+    }
+
+    /// The files were looked at again.
+    #[must_use]
+    pub fn of_files() -> Self {
+        Self { what: "the files".to_owned(), stages: Stage::ALL.to_vec() }
+    }
+}
+
 /// A line for the user, shown until the next key, or only until the next answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
@@ -165,6 +194,10 @@ pub struct State {
     pub replies: Replies,
     /// What it was asked of shapes and has not answered yet.
     pub looked_for: Vec<Question>,
+    /// What was changed last.
+    pub changed: Option<Change>,
+    /// The stage of the pipeline that the keys act on.
+    pub stage: usize,
     /// The eigenfunction that colours the shape, the index of its eigenvalue from 1.
     pub function: Option<usize>,
     /// The command palette, while it is open.
@@ -228,6 +261,8 @@ impl State {
             asked: Vec::new(),
             replies: Replies::default(),
             looked_for: Vec::new(),
+            changed: None,
+            stage: 0,
             function: None,
             palette: None,
             purpose: Purpose::default(),

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore, leave,
-    palette, parameters, pins,
+    Action, Change, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore,
+    leave, palette, parameters, pins,
 };
-use crate::query::{Answer, Parameter, Settings};
+use crate::query::{Answer, Parameter, Settings, Stage};
 
 /// Lets an action happen. Returns what must now happen outside; never waits.
 pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
@@ -97,6 +97,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Set(parameter, value) => return set(state, parameter, &value),
         Action::Recall => return recall(state),
         Action::Rescanned => {
+            state.changed = Some(Change::of_files());
             state.replies.clear_surfaces();
             state.looked_for.clear();
         }
@@ -188,6 +189,10 @@ fn choose(state: &mut State, parameter: Parameter) {
 
 /// One line up or down: in the help, in the list of models, else in the panel of parameters.
 fn step(state: &mut State, by: isize) {
+    if state.view == View::Pipeline && state.help.is_none() && state.palette.is_none() {
+        state.stage = state.stage.saturating_add_signed(by).min(Stage::ALL.len() - 1);
+        return;
+    }
     let lists = matches!(state.view, View::Models | View::Neighbours | View::Compare);
     if lists || state.help.is_some() || state.palette.is_some() {
         scroll(state, by);
@@ -273,6 +278,7 @@ pub(super) fn adopt(state: &mut State, next: Settings, turned: Option<Parameter>
         return Vec::new();
     }
     state.history.remember(&state.settings, turned);
+    state.changed = Some(Change::between(&state.settings, &next));
     state.settings = next.clone();
     vec![Effect::Send(Command::Set(next))]
 }
@@ -296,6 +302,7 @@ fn travel(state: &mut State, back: bool) -> Vec<Effect> {
     }
     let word = if back { "undone" } else { "redone" };
     say(state, format!("{word}: {}", changed.join(", ")));
+    state.changed = Some(Change::between(&state.settings, &next));
     state.settings = next.clone();
     vec![Effect::Send(Command::Set(next))]
 }

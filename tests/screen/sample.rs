@@ -1,6 +1,6 @@
 //! A rich answer made up from seeded numbers, always the same.
 
-use std::{path::PathBuf, sync::Arc, time::Duration};
+use std::{os::unix::ffi::OsStringExt as _, path::PathBuf, sync::Arc, time::Duration};
 
 use eigenselect::{
     dataset::Role,
@@ -87,6 +87,8 @@ pub fn full() -> Answer {
         tables: ready(tables),
         models: Arc::new(models),
         members: Arc::new(members),
+        short: None,
+        memory: Some(123_456_789),
         warnings: Arc::new(vec![
             "shrec07/notes.txt: passed over, not a mesh format that is read".to_owned(),
             "the cache at /home/user/.cache/eigenselect cannot be written: no space left on device".to_owned(),
@@ -205,6 +207,8 @@ fn stages(models: usize, out: usize, stale: usize) -> Vec<StageRow> {
         stale,
         failed,
         seconds,
+        // What a value costs here, made up like the rest.
+        saved: (memory + disk) as f64 * 0.0712,
     };
     let there = models - out - stale;
     let surveyed = (models - out) / 30;
@@ -284,7 +288,9 @@ pub fn hostile() -> Answer {
     let mut models = answer.models.as_ref().clone();
     for (model, name) in models.iter_mut().zip(names.iter().cycle()) {
         model.name.clone_from(name);
-        model.path = PathBuf::from(name);
+        // Bytes that are no UTF-8, too.
+        let bytes = [name.as_bytes(), b"\xff\xfe\x80.off"].concat();
+        model.path = PathBuf::from(std::ffi::OsString::from_vec(bytes));
         model.defects = Arc::new(vec![format!("{name}: bad {name}")]);
     }
     models[1].state = ModelState::Out { reason: format!("{}: {}", names[0], names[4]) };

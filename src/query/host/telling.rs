@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Duration};
 use super::{Host, Row};
 use crate::{
     dataset::Model,
-    query::{Answer, ModelRow, ModelState, Progress, Stage, StageRow},
+    query::{Answer, ModelRow, ModelState, Progress, Stage, StageRow, costs},
 };
 
 impl Host {
@@ -15,7 +15,6 @@ impl Host {
         let models: Vec<ModelRow> = self.rows.iter().zip(&self.data.models).map(|(row, m)| self.row(row, m)).collect();
         let progress = self.progress(&models);
         let mut warnings = self.data.warnings.clone();
-        warnings.extend(self.too_short());
         warnings.extend(self.library.store().warnings());
         warnings.extend(self.failure.as_ref().map(ToString::to_string));
         // Values on fewer models than there are by now are the newest there can be while spectra are being solved.
@@ -38,6 +37,8 @@ impl Host {
             boosted: shown.boosted.clone(),
             marks: shown.marks.clone(),
             tables: shown.tables.clone(),
+            short: self.too_short(),
+            memory: costs::memory(),
             warnings: Arc::new(warnings),
         }
     }
@@ -133,11 +134,21 @@ impl Host {
             let failed_before = Stage::ALL.into_iter().filter(|&s| s < stage).map(failed_at).sum::<usize>();
             let needed = if stage <= Stage::Spectrum { needed - failed_before } else { needed };
             let (ran, disk) = (tally.ran, tally.disk);
+            let memory = there.saturating_sub(ran + disk);
+            let saved = match stage {
+                Stage::Content | Stage::Survey => self.library.costs().mean(stage) * (memory + disk) as f64,
+                Stage::Spectrum => {
+                    let cost = self.rows.iter().filter_map(|row| row.found.as_ref()?.as_ref().ok());
+                    (cost.map(|solved| solved.found.seconds).sum::<f64>() - tally.ran_busy.as_secs_f64()).max(0.0)
+                }
+                _ => self.library.trace().cost(stage).as_secs_f64() * memory as f64,
+            };
             StageRow {
                 stage,
                 ran,
                 disk,
-                memory: there.saturating_sub(ran + disk),
+                memory,
+                saved,
                 stale: needed.saturating_sub(there + failed),
                 failed,
                 seconds: tally.busy.as_secs_f64(),

@@ -194,7 +194,8 @@ fn run(answer: &Answer, origin: &Origin<'_>) -> Run {
             models.push(RunModel { name: row.name.clone(), source, seconds });
         }
     }
-    let warnings = answer.warnings.iter().filter(|warning| !origin.passed_over.contains(warning)).cloned().collect();
+    let short = answer.short.iter().cloned();
+    let warnings = short.chain(answer.warnings.iter().filter(|w| !origin.passed_over.contains(w)).cloned()).collect();
     Run {
         seconds: origin.seconds,
         threads: origin.threads,

@@ -113,13 +113,18 @@ fn selected(state: &State) -> Table {
 }
 
 fn stages(state: &State) -> Table {
-    let mut table = Table::new(&["stage", "ran", "memory", "disk", "stale", "failed", "seconds"]);
+    let mut table = Table::new(&["stage", "ran", "memory", "disk", "stale", "failed", "seconds", "saved"]);
     for row in &state.answer.stages {
         let counts = [row.ran, row.memory, row.disk, row.stale, row.failed].map(|count| json!(count));
-        let seconds = figure(Some(row.seconds));
-        table.rows.push(std::iter::once(json!(row.stage.name())).chain(counts).chain([seconds]).collect());
+        let times = [row.seconds, row.saved].map(|seconds| figure(Some(seconds)));
+        table.rows.push(std::iter::once(json!(row.stage.name())).chain(counts).chain(times).collect());
     }
     table
+}
+
+/// Seconds that are 0 where nobody knows them.
+fn known(seconds: f64) -> Option<f64> {
+    (seconds > 0.0).then_some(seconds)
 }
 
 fn models(state: &State) -> Table {
@@ -131,8 +136,8 @@ fn models(state: &State) -> Table {
             ModelState::Waiting => ("waiting", None, None),
             ModelState::Working { .. } => ("working", None, None),
             ModelState::Ready { source: Source::Ran, seconds, .. } => ("ran", Some(*seconds), None),
-            ModelState::Ready { source: Source::Memory, .. } => ("memory", None, None),
-            ModelState::Ready { source: Source::Disk, .. } => ("disk", None, None),
+            ModelState::Ready { source: Source::Memory, seconds, .. } => ("memory", known(*seconds), None),
+            ModelState::Ready { source: Source::Disk, seconds, .. } => ("disk", known(*seconds), None),
             ModelState::Out { reason } => ("out", None, Some(reason)),
         };
         table.rows.push(vec![

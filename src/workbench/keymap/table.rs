@@ -136,6 +136,8 @@ fn explaining() -> Vec<Row> {
     };
     vec![
         open(View::Models, "the model's neighbours"),
+        (In(View::Pipeline), vec![(Up, Action::Up), (Down, Action::Down)], "↑ ↓", "the stage before, after", "stage"),
+        open(View::Pipeline, "the stage's models, or what it makes"),
         (
             In(View::Confusion),
             vec![
