@@ -2,7 +2,8 @@
 //!
 //! What a frame costs on a slow line is its bytes. The canvas knows what every cell shows, and so writes colours and
 //! attributes only where they change, walks over short gaps by writing what is there already, and erases what is blank
-//! instead of writing spaces. It uses what every terminal since the VT220 knows: CUP, CUF, EL, ECH, ED and SGR (ECMA-48).
+//! instead of writing spaces. It uses what every terminal since the VT220 knows: CUP, CUF, EL, ECH, ED and SGR of
+//! ECMA-48.
 
 use std::{
     cell::RefCell,
