@@ -34,6 +34,7 @@ mod footer;
 mod header;
 mod heading;
 mod help;
+mod journal;
 mod look;
 mod models;
 mod names;
@@ -109,6 +110,8 @@ fn screen(state: &State, pane: &mut Pane<'_>) {
     view(state, &mut pane.part(below));
     if state.help.is_some() {
         help::draw(state, pane);
+    } else if let Some(scroll) = state.told {
+        journal::draw(state, scroll, pane);
     } else if state.palette.is_some() {
         palette::draw(state, pane);
     }

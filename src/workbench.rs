@@ -27,9 +27,11 @@ pub use self::{
 mod action;
 mod asking;
 mod entry;
+pub mod experiment;
 mod explore;
 pub mod export;
 mod history;
+pub mod journal;
 pub mod keymap;
 mod leave;
 mod message;

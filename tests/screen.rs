@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "screen/experiment.rs"]
+mod experiment;
 #[path = "screen/figures.rs"]
 mod figures;
 #[path = "screen/replies.rs"]
@@ -20,8 +22,8 @@ use eigenselect::{
     query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
     workbench::{
-        Action, Command, Content, Effect, Figure, Filter, Leave, State, Trial, View, keymap, pins, recipe,
-        shape::Style, update,
+        Action, Command, Content, Effect, Figure, Filter, Leave, State, Trial, View, experiment::Face, keymap, pins,
+        recipe, shape::Style, update,
     },
 };
 use ratatui::{
@@ -408,11 +410,12 @@ fn the_help_comes_from_the_keymap() {
     let mut state = sample::state(sample::full());
     update(&mut state, Action::Help);
     compare("help-80x24", &drawn(&state, SMALL));
-    let all = drawn(&state, LARGE);
+    let mut all = drawn(&state, LARGE);
+    update(&mut state, Action::Last);
+    all += &drawn(&state, LARGE);
     for binding in keymap::bindings() {
         assert!(all.contains(&binding.label) && all.contains(&binding.about), "{binding:?}");
     }
-    update(&mut state, Action::Last);
     assert!(drawn(&state, SMALL).contains("draw the screen anew"), "its end can be reached");
 }
 
@@ -486,7 +489,10 @@ fn moods() -> Vec<State> {
     (0..40).for_each(|_| drop(update(&mut typing, Action::Insert('象'))));
     let mut dead = sample::state(sample::hostile());
     update(&mut dead, Action::Fatal("\u{1b}[2J the engine ".repeat(30)));
-    moods.extend([helped, typing, dead]);
+    let mut told = sample::state(sample::full());
+    update(&mut told, Action::Journal);
+    moods.extend([helped, typing, dead, told]);
+    moods.extend(Face::ALL.map(|face| experiment::faced(face, SMALL)));
     moods
 }
 

@@ -19,6 +19,7 @@ use eigenselect::{
     watch::Unwatched,
     workbench::{
         Command, Update,
+        experiment::Told,
         worker::{Setup, Worker},
     },
 };
@@ -216,6 +217,7 @@ fn trials_are_made_beside_the_screen() {
         match updates.recv_timeout(Duration::from_mins(1)).unwrap() {
             Update::Trial(trial) => trials.push(trial),
             Update::Answer(answer) => assert_eq!(answer.settings, small(), "the screen's settings stay"),
+            Update::Note(_) | Update::Trying(..) => {}
             other => panic!("{other:?}"),
         }
     }
@@ -229,6 +231,100 @@ fn trials_are_made_beside_the_screen() {
     let after = wait_for(&updates, |answer| answer.settings == others[0] && settled(answer));
     assert_eq!(trials[0].figures.boosted, after.boosted.value);
     assert_eq!(trials[0].figures.test(&trials[0].figures, Method::Boost, false), Some(1.0));
+}
+
+/// The first piece of news that `right` picks.
+fn wait_for_news<T>(updates: &mpsc::Receiver<Update>, right: impl Fn(Update) -> Option<T>) -> T {
+    let deadline = Instant::now() + Duration::from_mins(1);
+    loop {
+        let update = updates.recv_timeout(deadline.saturating_duration_since(Instant::now())).unwrap();
+        if let Some(found) = right(update) {
+            return found;
+        }
+    }
+}
+
+fn told(update: Update) -> Option<Result<usize, String>> {
+    match update {
+        Update::Paper(Told::Done(outcome)) => Some(outcome),
+        _ => None,
+    }
+}
+
+#[test]
+fn the_document_is_written_while_the_screen_stays_live() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 3, 5);
+    let settings = Settings { kmax: 20, rounds: 5, remesh: Some(150), ..Settings::default() };
+    let (worker, updates) = spawn(setup(&data, &cache, &settings));
+    wait_for(&updates, settled);
+    let paper = folder.path().join("paper");
+    worker.send(Command::Paper(paper.clone()));
+    let turned = Settings { k: 3, ..settings.clone() };
+    worker.send(Command::Set(turned.clone()));
+    let mut answered = false;
+    let files = loop {
+        match updates.recv_timeout(Duration::from_mins(1)).unwrap() {
+            Update::Answer(answer) => answered |= answer.settings == turned && settled(&answer),
+            other => {
+                if let Some(outcome) = told(other) {
+                    break outcome.unwrap();
+                }
+            }
+        }
+    };
+    assert!(answered, "the knob was answered before the document was there");
+    assert_eq!(std::fs::read_dir(&paper).unwrap().count(), files);
+    assert!(std::fs::read_to_string(paper.join("paper.md")).unwrap().contains("## Figure 7:"));
+    // Called off, it leaves nothing and says why.
+    let other = folder.path().join("other");
+    worker.send(Command::Paper(other.clone()));
+    worker.send(Command::StopPaper);
+    assert_eq!(wait_for_news(&updates, told), Err("interrupted".to_owned()));
+    assert!(!other.exists());
+}
+
+#[test]
+fn the_variants_of_a_shape_are_solved_once_they_are_asked_for() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 2, 3);
+    let settings = Settings { kmax: 20, remesh: Some(150), class: 1, ..Settings::default() };
+    let (worker, updates) = spawn(setup(&data, &cache, &settings));
+    worker.send(Command::Vary(settings.clone()));
+    let varied = wait_for_news(&updates, |update| match update {
+        Update::Varied(varied) => Some(varied),
+        _ => None,
+    });
+    assert_eq!(varied.settings, settings);
+    let variants = varied.variants.as_ref().unwrap();
+    assert!(variants.len() == 9 && variants[0].fem.is_some() && variants[0].cot.is_some());
+}
+
+#[test]
+fn what_is_done_is_told_for_the_journal() {
+    let folder = common::scratch();
+    let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
+    common::write_data(&data, 2, 4);
+    std::fs::write(data.join("class0/m9.off"), "OFF\nnothing").unwrap();
+    let (worker, updates) = spawn(setup(&data, &cache, &small()));
+    let mut lines: Vec<String> = Vec::new();
+    let mut wait = |word: &str| {
+        let found = |line: &String| line.contains(word);
+        while !lines.iter().any(found) {
+            lines.push(wait_for_news(&updates, |update| match update {
+                Update::Note(line) => Some(format!("{} {}", line.weight.name(), line.text)),
+                _ => None,
+            }));
+        }
+    };
+    wait("9 models of 2 classes");
+    wait("note spectra: 8 computed");
+    wait("warning class0/m9");
+    wait("study of 8 models");
+    worker.send(Command::Set(Settings { rounds: 7, ..small() }));
+    wait("note T = 7");
 }
 
 #[test]

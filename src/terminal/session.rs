@@ -149,6 +149,25 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Trial(trial));
             }
+            Event::Update(Update::Trying(settings, done, total)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Trying(settings, done, total));
+            }
+            Event::Update(Update::Paper(told)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Paper(told));
+            }
+            Event::Update(Update::Varied(varied)) => {
+                self.due.sooner(Due::Now);
+                self.apply(Action::Varied(varied));
+            }
+            Event::Update(Update::Note(line)) => {
+                // A journal that nobody looks at changes nothing that is seen.
+                if self.state.told.is_some() {
+                    self.due.sooner(Due::Now);
+                }
+                self.apply(Action::Note(line));
+            }
             Event::Update(Update::Written(path, outcome)) => {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Written(path, outcome));

@@ -24,7 +24,7 @@ use super::{
 use crate::{
     query::Stage,
     study::{Curve, FirstK, Score},
-    workbench::State,
+    workbench::{State, experiment::Face},
 };
 
 /// Which of the two figures.
@@ -52,8 +52,23 @@ impl Figure {
     }
 }
 
+mod lettered;
+mod recall;
+mod spectra;
+mod variation;
+
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
+    match state.experiment.face {
+        Face::Own => own(state, pane),
+        Face::Spectra => spectra::draw(state, pane),
+        Face::Recall => recall::draw(state, pane),
+        Face::Variation => variation::draw(state, pane),
+    }
+}
+
+/// ε and mean ADR of the parameters on the screen.
+fn own(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
     let half = rest.height.div_ceil(2);
     let upper = pane::cut_top(&mut rest, half);

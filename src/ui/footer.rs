@@ -11,7 +11,7 @@
 use ratatui::style::Modifier;
 
 use super::{look::Role, number, pane::Pane, text};
-use crate::workbench::{Entry, Notice, Purpose, State, keymap, parameters};
+use crate::workbench::{Entry, Notice, Purpose, State, experiment::Document, keymap, parameters};
 
 /// One or two lines, as high as the pane.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
@@ -20,7 +20,10 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         (None, Some(reason), _) => line(pane, "×", reason, Role::Bad),
         (None, None, Some(Notice { text, bad: true, .. })) => line(pane, "×", text, Role::Bad),
         (None, None, Some(Notice { text, bad: false, .. })) => line(pane, "·", text, Role::Plain),
-        (None, None, None) => progress(state, pane),
+        (None, None, None) => match &state.experiment.document {
+            Some(document) => writing(document, pane),
+            None => progress(state, pane),
+        },
     }
     hints(state, pane);
 }
@@ -28,6 +31,27 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
 fn line(pane: &mut Pane<'_>, mark: &str, text: &str, role: Role) {
     let room = (pane.width() as usize).saturating_sub(4);
     pane.spans(1, 0, [(mark, role), (" ", role), (&text::fit(text, room), role)]);
+}
+
+/// The paper's document, as it is made.
+fn writing(document: &Document, pane: &mut Pane<'_>) {
+    let head = match (document.called_off, document.total) {
+        (true, _) => "the document is being called off ".to_owned(),
+        (false, 0) => format!("the paper's document to {} ", text::clean(&document.folder)),
+        (false, total) => {
+            format!("the paper's document to {}: {}/{total} ", text::clean(&document.folder), document.done)
+        }
+    };
+    let tail = if document.called_off { "" } else { "  X calls it off" };
+    let room = (pane.width() as usize).saturating_sub(text::width(tail) + 2);
+    let x = pane.put(1, 0, &text::fit(&head, room), Role::Plain);
+    let bar = (pane.width() as usize).saturating_sub(x as usize + text::width(tail) + 1).min(40);
+    let mut x = x;
+    if bar >= 6 && document.total > 0 {
+        let (full, rest) = self::bar(document.done as f64 / document.total as f64, bar);
+        x = pane.spans(x, 0, [(full.as_str(), Role::Train), (rest.as_str(), Role::Faint)]);
+    }
+    pane.put(x, 0, tail, Role::Faint);
 }
 
 fn progress(state: &State, pane: &mut Pane<'_>) {
@@ -93,6 +117,7 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
         Purpose::Value => (state.parameter.name(), " = "),
         Purpose::Needle => ("models with", " "),
         Purpose::File => ("write to", " "),
+        Purpose::Folder => ("write the paper's document to the folder", " "),
     };
     let x = pane.spans(1, 0, [(name, Role::Strong), (sign, Role::Strong), (before.as_str(), Role::Plain)]);
     let mut after = after.chars();
@@ -102,6 +127,7 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
     let (says, role) = match &entry.error {
         Some(error) => (format!("× {error}"), Role::Bad),
         None if state.purpose == Purpose::Needle => (String::new(), Role::Faint),
+        None if state.purpose == Purpose::Folder => ("eight spectra of every model".to_owned(), Role::Faint),
         None if state.purpose == Purpose::File => {
             ("Tab: .csv .json .txt .svg .png; .toml for a recipe".to_owned(), Role::Faint)
         }

@@ -4,9 +4,11 @@ use std::{path::PathBuf, sync::Arc};
 
 use super::{
     Command, Trial, View,
+    experiment::{Told, Varied},
+    journal::Line,
     shape::{Picture, Scene},
 };
-use crate::query::{Answer, Parameter, Reply};
+use crate::query::{Answer, Parameter, Reply, Settings};
 
 /// Something that happened: a key's meaning, or news.
 #[derive(Debug, Clone, PartialEq)]
@@ -133,6 +135,18 @@ pub enum Action {
     Copy,
     /// Take up the last session.
     Restore,
+    /// Show something else in the view of curves: the next of the paper's figures.
+    TurnFace,
+    /// The spectrum before or after in the list of the view of curves.
+    StepSpectrum(isize),
+    /// Switch on, or off, what the view of curves offers to compute.
+    Switch,
+    /// Switch off every spectrum.
+    SwitchOff,
+    /// Write the paper's whole document, or call off the one that is being written.
+    WritePaper,
+    /// Show or hide the journal.
+    Journal,
     /// Sweep over the chosen parameter.
     Sweep,
     /// Show the sweep instead of the pins, or no longer.
@@ -161,6 +175,14 @@ pub enum Action {
     Rescanned,
     /// Figures under other parameters.
     Trial(Arc<Trial>),
+    /// A trial has so many models of so many.
+    Trying(Settings, usize, usize),
+    /// News of the paper's document.
+    Paper(Told),
+    /// The variants of a shape.
+    Varied(Arc<Varied>),
+    /// A line for the journal.
+    Note(Line),
     /// A file was written, or why not.
     Written(PathBuf, Result<(), String>),
     /// A scene that was painted.

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::{
-    Figure, State, View, explore, parameters, pins,
+    Figure, State, View, experiment, explore, parameters, pins,
     shape::{self, Camera, Function, Scene},
 };
 use crate::{
@@ -60,6 +60,7 @@ pub fn questions(state: &State) -> Vec<Question> {
             vec![Question::Shared(state.settings.class)]
         }
         View::Confusion => vec![Question::Decisions(method)],
+        View::Curves if experiment::asks_retrieval(state) => vec![Question::Retrieval],
         // The paired tests need what every method decides, here and for each pin.
         View::Compare if !state.pins.is_empty() => pins::questions(),
         View::Neighbours => state.model().map(|model| Question::Reasons { method, model }).into_iter().collect(),

@@ -12,6 +12,7 @@ pub use self::{
     rows::table,
 };
 
+mod experiment;
 mod figures;
 mod rows;
 

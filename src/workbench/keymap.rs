@@ -71,13 +71,15 @@ pub enum Context {
     Palette,
     /// While the help is open.
     Help,
+    /// While the journal is open.
+    Journal,
     /// Always.
     Always,
 }
 
 impl Context {
     /// All contexts, in the order of the help.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Views,
         Self::In(View::Overview),
         Self::In(View::Curves),
@@ -92,6 +94,7 @@ impl Context {
         Self::Entry,
         Self::Palette,
         Self::Help,
+        Self::Journal,
         Self::Always,
     ];
 
@@ -104,6 +107,7 @@ impl Context {
             Self::Entry => "Typing",
             Self::Palette => "Command palette",
             Self::Help => "Help",
+            Self::Journal => "Journal",
             Self::Always => "Always",
         }
     }
@@ -147,6 +151,8 @@ pub fn bindings() -> Vec<Binding> {
 pub fn contexts(state: &State) -> Vec<Context> {
     if state.help.is_some() {
         vec![Context::Help, Context::Always]
+    } else if state.told.is_some() {
+        vec![Context::Journal, Context::Always]
     } else if state.palette.is_some() {
         vec![Context::Palette, Context::Always]
     } else if state.entry.is_some() {
@@ -166,7 +172,9 @@ pub fn action(state: &State, key: Key) -> Option<Action> {
     });
     match (bound, key) {
         (Some(action), _) => Some(action),
-        (None, Key::Char(character)) if (state.entry.is_some() || state.palette.is_some()) && state.help.is_none() => {
+        (None, Key::Char(character))
+            if (state.entry.is_some() || state.palette.is_some()) && state.help.is_none() && state.told.is_none() =>
+        {
             Some(Action::Insert(character))
         }
         _ => None,

@@ -67,6 +67,10 @@ pub(super) fn told(state: &mut State, path: &std::path::Path, outcome: Result<()
             (format!("{shown}: {reason}"), true)
         }
     };
+    notice(state, text, bad);
+}
+
+pub(super) fn notice(state: &mut State, text: String, bad: bool) {
     state.notice = Some(Notice { text, bad, brief: false });
 }
 

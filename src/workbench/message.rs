@@ -4,7 +4,9 @@ use std::{path::PathBuf, sync::Arc};
 
 use super::{
     Trial,
+    experiment::{Told, Varied},
     export::Drawing,
+    journal::Line,
     shape::{Picture, Scene},
 };
 use crate::query::{Answer, Question, Reply, Settings};
@@ -31,6 +33,14 @@ pub enum Command {
         /// Whether a file that is there may be replaced.
         overwrite: bool,
     },
+    /// Write the paper's document to this folder, with the parameters in force.
+    Paper(PathBuf),
+    /// Write it no longer.
+    StopPaper,
+    /// Make and solve the variants of the first training model of the parameters' class.
+    Vary(Settings),
+    /// Solve them no longer.
+    StopVarying,
     /// Look at the files again.
     Rescan,
     /// Stop solving spectra; what is there stays.
@@ -77,6 +87,14 @@ pub enum Update {
     Rescanned,
     /// Figures under other parameters.
     Trial(Arc<Trial>),
+    /// A trial under these parameters has so many models of so many.
+    Trying(Settings, usize, usize),
+    /// News of the paper's document.
+    Paper(Told),
+    /// The variants of a shape.
+    Varied(Arc<Varied>),
+    /// What was done, for the journal.
+    Note(Line),
     /// A file was written, or why not.
     Written(PathBuf, Result<(), String>),
     /// A scene that was painted.

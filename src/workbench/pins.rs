@@ -1,6 +1,6 @@
 //! Settings put aside to compare the present ones with, and sweeps over one parameter.
 
-use super::{Figures, State, Trial};
+use super::{Figures, State, Trial, experiment};
 use crate::{
     query::{Finding, Parameter, Question, Reply, Settings},
     study::Method,
@@ -143,7 +143,7 @@ pub fn untried(state: &State) -> Vec<Settings> {
     let swept = state.sweep.iter().flat_map(|sweep| {
         sweep.settings.iter().zip(&sweep.figures).filter(|(_, figures)| figures.is_none()).map(|(s, _)| s.clone())
     });
-    pins.chain(swept).collect()
+    pins.chain(swept).chain(experiment::untried(state)).collect()
 }
 
 /// Takes in figures under other settings.
@@ -154,6 +154,8 @@ pub fn take(state: &mut State, trial: &Trial) {
     if let Some(sweep) = &mut state.sweep {
         sweep.take(trial);
     }
+    experiment::take(state, trial);
+    state.experiment.trying.take_if(|(settings, ..)| *settings == trial.settings);
 }
 
 /// The questions whose answers the comparison shows.

@@ -3,7 +3,10 @@
 use std::{collections::BTreeSet, sync::Arc};
 
 use super::{
-    Entry, History, ModelList, Palette, Pin, Replies, Sweep, Why, parameters,
+    Entry, History, ModelList, Palette, Pin, Replies, Sweep, Why,
+    experiment::Experiment,
+    journal::Journal,
+    parameters,
     recipe::Loaded,
     shape::{Camera, Pictures, Scene, Style},
 };
@@ -113,6 +116,8 @@ pub enum Purpose {
     Needle,
     /// The name of a file to write.
     File,
+    /// The name of a folder to write the paper's document to.
+    Folder,
 }
 
 /// The last change of what the study is made of.
@@ -210,6 +215,12 @@ pub struct State {
     pub pin: usize,
     /// A sweep over one parameter.
     pub sweep: Option<Sweep>,
+    /// The paper's experiment.
+    pub experiment: Experiment,
+    /// What the engine did.
+    pub journal: Journal,
+    /// The journal is open, scrolled down by so many lines.
+    pub told: Option<usize>,
     /// Files that this session wrote.
     pub written: BTreeSet<String>,
     /// The last session of the data set, until it is taken up.
@@ -269,6 +280,9 @@ impl State {
             pins: Vec::new(),
             pin: 0,
             sweep: None,
+            experiment: Experiment::default(),
+            journal: Journal::default(),
+            told: None,
             written: BTreeSet::new(),
             last: None,
             tried: Vec::new(),

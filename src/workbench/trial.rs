@@ -1,8 +1,11 @@
 //! The study's figures under other parameters than those on the screen: of pins, and of the values of a sweep.
 
-use std::sync::{
-    Arc,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
 };
 
 use crate::{
@@ -136,12 +139,49 @@ impl Watch for Recall {
     }
 }
 
+/// Progress is told so often at most.
+const OFTEN: Duration = Duration::from_millis(150);
+
+/// A recall that also tells progress, not too often.
+pub(super) struct Watching<F> {
+    recall: Recall,
+    tell: F,
+    last: Mutex<Option<Instant>>,
+}
+
+impl<F: Fn(usize, usize) + Sync> Watching<F> {
+    pub(super) const fn new(recall: Recall, tell: F) -> Self {
+        Self { recall, tell, last: Mutex::new(None) }
+    }
+}
+
+impl<F: Fn(usize, usize) + Sync> Watch for Watching<F> {
+    fn cancelled(&self) -> bool {
+        self.recall.cancelled()
+    }
+
+    fn progress(&self, done: usize, total: usize) {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if last.is_none_or(|last| last.elapsed() >= OFTEN) {
+            *last = Some(Instant::now());
+            (self.tell)(done, total);
+        }
+    }
+}
+
 /// Makes the study under each of the parameters, one after the other, with a host of their own. Ends early when it is
-/// called off.
-pub(super) fn run(mut host: Host, all: Vec<Settings>, recall: &Recall, tell: &dyn Fn(Trial)) {
+/// called off. `trying` hears how far the spectra of each are.
+pub(super) fn run(
+    mut host: Host,
+    all: Vec<Settings>,
+    recall: &Recall,
+    tell: &dyn Fn(Trial),
+    trying: &(dyn Fn(&Settings, usize, usize) + Sync),
+) {
     for settings in all {
         host.set(settings.clone());
-        let Ok(answer) = host.run(recall) else { return };
+        let watch = Watching::new(recall.clone(), |done, total| trying(&settings, done, total));
+        let Ok(answer) = host.run(&watch) else { return };
         let mut figures = Figures::of(&answer);
         if let Some(members) = host.members() {
             for method in Method::ALL.into_iter().take_while(|_| !recall.cancelled()) {

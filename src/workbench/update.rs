@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Change, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, explore,
-    leave, palette, parameters, pins,
+    Action, Change, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, experiment,
+    explore, leave, palette, parameters, pins,
 };
 use crate::query::{Answer, Parameter, Settings, Stage};
 
@@ -48,6 +48,10 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             | Action::Picture(..)
             | Action::Rescanned
             | Action::Trial(_)
+            | Action::Trying(..)
+            | Action::Paper(_)
+            | Action::Varied(_)
+            | Action::Note(_)
             | Action::Written(..)
             | Action::Resize(..)
             | Action::Report(_)
@@ -83,6 +87,13 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             pins::complete(state);
         }
         Action::Trial(trial) => pins::take(state, &trial),
+        Action::Trying(settings, done, total) => state.experiment.trying = Some((settings, done, total)),
+        Action::Paper(told) => experiment::told(state, told),
+        Action::Varied(varied) => experiment::varied(state, varied),
+        Action::Note(line) => state.journal.take(line),
+        Action::Switch => return experiment::switch(state),
+        Action::SwitchOff => return experiment::switch_off(state),
+        Action::WritePaper => return experiment::document(state),
         Action::Written(path, outcome) => leave::told(state, &path, outcome),
         Action::WriteView => {
             let proposed = leave::proposed(state);
@@ -124,11 +135,15 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
 fn look(state: &mut State, action: &Action) {
     match action {
         Action::Help => state.help = if state.help.is_some() { None } else { Some(0) },
+        Action::Journal => state.told = if state.told.is_some() { None } else { Some(0) },
+        Action::TurnFace => state.experiment.face = state.experiment.face.next(),
+        Action::StepSpectrum(by) => experiment::step(state, *by),
         Action::Close => {
             if state.entry.is_some() && state.purpose == Purpose::Needle {
                 explore::find(state, String::new());
             }
             state.help = None;
+            state.told = None;
             state.entry = None;
             state.palette = None;
         }
@@ -194,7 +209,7 @@ fn step(state: &mut State, by: isize) {
         return;
     }
     let lists = matches!(state.view, View::Models | View::Neighbours | View::Compare);
-    if lists || state.help.is_some() || state.palette.is_some() {
+    if lists || state.help.is_some() || state.told.is_some() || state.palette.is_some() {
         scroll(state, by);
         return;
     }
@@ -216,6 +231,8 @@ fn scroll(state: &mut State, by: isize) {
         }
     } else if let Some(line) = &mut state.help {
         *line = line.saturating_add_signed(by).min(super::keymap::lines());
+    } else if let Some(line) = &mut state.told {
+        *line = line.saturating_add_signed(by).min(state.journal.len());
     } else if state.view == View::Models {
         let answer = Arc::clone(&state.answer);
         state.models.shift(by, &answer);
@@ -346,7 +363,8 @@ fn commit(state: &mut State) -> Vec<Effect> {
             return Vec::new();
         }
         Purpose::File if !text.trim().is_empty() => return leave::write(state, text.trim()),
-        Purpose::File | Purpose::Value => {}
+        Purpose::Folder if !text.trim().is_empty() => return experiment::begin(state, text.trim()),
+        Purpose::File | Purpose::Folder | Purpose::Value => {}
     }
     if text.trim().is_empty() {
         state.entry = None;

@@ -13,6 +13,8 @@ use std::{
 
 use super::{
     Command, Trial, Update,
+    experiment::{Told, Varied},
+    journal::Weight,
     shape::Painter,
     trial::Recall,
     watcher::{Sight, Watcher},
@@ -24,6 +26,8 @@ use crate::{
 };
 
 mod asked;
+mod errands;
+mod telling;
 
 /// Where the models are and how they are worked on.
 #[derive(Debug, Clone)]
@@ -58,6 +62,12 @@ enum Message {
     Surface(Reply),
     /// Figures under other parameters.
     Trial(Trial),
+    /// How far the spectra of a trial are.
+    Trying(Settings, usize, usize),
+    /// News of the paper's document.
+    Paper(Told),
+    /// The variants of a shape.
+    Varied(Arc<Varied>),
     /// The data set changed.
     Changed,
     /// A file was written, or why not.
@@ -166,6 +176,10 @@ struct Desk<'a> {
     askings: u64,
     /// Calls off the trials under way.
     recall: Recall,
+    /// Call off the paper's document and the variants under way.
+    paper: Recall,
+    varying: Recall,
+    told: telling::Told,
     publish_at: Option<Instant>,
     saved: bool,
     /// Looks at the folder that are left for files that were in the middle of a change, and when the next one is due.
@@ -197,6 +211,9 @@ impl<'a> Desk<'a> {
             questions: Vec::new(),
             askings: 0,
             recall: Recall::default(),
+            paper: Recall::default(),
+            varying: Recall::default(),
+            told: telling::Told::begin(),
             publish_at: Some(now),
             saved: false,
             looks: LOOKS,
@@ -230,11 +247,20 @@ impl<'a> Desk<'a> {
                         self.looks = LOOKS;
                         self.obey(&Command::Rescan);
                     }
-                    Message::Written(path, outcome) => (self.notify)(Update::Written(path, outcome)),
+                    Message::Written(path, outcome) => self.written(path, outcome),
                     Message::Command(Command::Try(settings)) => self.try_out(settings),
-                    Message::Trial(trial) => (self.notify)(Update::Trial(Arc::new(trial))),
+                    Message::Trial(trial) => self.tried(trial),
+                    Message::Trying(settings, done, total) => (self.notify)(Update::Trying(settings, done, total)),
+                    Message::Paper(told) => self.paper_told(told),
+                    Message::Varied(varied) => (self.notify)(Update::Varied(varied)),
+                    Message::Command(Command::Paper(folder)) => self.write_paper(folder),
+                    Message::Command(Command::StopPaper) => self.paper.call(),
+                    Message::Command(Command::Vary(settings)) => self.vary(settings),
+                    Message::Command(Command::StopVarying) => self.varying.call(),
                     Message::Command(Command::Quit) => {
                         self.recall.call();
+                        self.paper.call();
+                        self.varying.call();
                         self.host.save();
                         return;
                     }
@@ -252,11 +278,8 @@ impl<'a> Desk<'a> {
                     Message::Surface(reply) => (self.notify)(Update::Reply(Arc::new(reply))),
                 }
             }
-            if let Some(settings) = newest
-                && self.host.set(settings)
-            {
-                self.restudy();
-                self.publish_within(GRACE);
+            if let Some(settings) = newest {
+                self.turn(settings);
             }
             self.look_again();
             let begun = self.begin_study();
@@ -268,7 +291,9 @@ impl<'a> Desk<'a> {
             }
             if self.publish_at.is_some_and(|at| at <= Instant::now()) {
                 self.publish_at = None;
-                (self.notify)(Update::Answer(Arc::new(self.host.answer())));
+                let answer = Arc::new(self.host.answer());
+                self.account(&answer);
+                (self.notify)(Update::Answer(answer));
             }
             if self.host.complete() && !std::mem::replace(&mut self.saved, true) {
                 self.host.save();
@@ -280,6 +305,7 @@ impl<'a> Desk<'a> {
         match command {
             Command::Rescan => match self.setup.open() {
                 Ok(data) => {
+                    self.note(Weight::Note, "looked at the files again");
                     self.host.update(data);
                     (self.notify)(Update::Rescanned);
                     self.saved = false;
@@ -294,6 +320,10 @@ impl<'a> Desk<'a> {
             | Command::Look(_)
             | Command::Try(_)
             | Command::Write { .. }
+            | Command::Paper(_)
+            | Command::StopPaper
+            | Command::Vary(_)
+            | Command::StopVarying
             | Command::Paint(_)
             | Command::Quit => {}
         }
@@ -358,6 +388,7 @@ impl<'a> Desk<'a> {
         if let Some((_, members, begun)) = self.study.take_if(|(current, ..)| *current == number) {
             // A study of more models costs about as much again: leave the solving most of the time.
             self.next_study = Instant::now() + (begun.elapsed() * 4).max(Duration::from_millis(500));
+            self.note_study(members.places.len(), begun.elapsed());
             self.studied = Some(members);
             self.publish_within(Duration::ZERO);
         }

@@ -34,7 +34,7 @@ pub struct Variation {
 }
 
 /// The first eigenvalues of one shape under both operators.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spectra {
     /// What it is.
     pub name: String,
@@ -118,6 +118,14 @@ pub fn of_file(
 }
 
 impl Spectra {
+    /// Those of a model of the data set under one operator; the eigenvalues may be more than are shown.
+    #[must_use]
+    pub fn of_model(name: &str, vertices: usize, operator: Operator, eigenvalues: &[f64]) -> Self {
+        let mut spectra = Self { name: name.to_owned(), vertices, fem: None, cot: None, why: None };
+        spectra.put(operator, eigenvalues);
+        spectra
+    }
+
     /// Takes in the eigenvalues of one operator; they may be more than are shown.
     pub(super) fn put(&mut self, operator: Operator, eigenvalues: &[f64]) {
         let count = EIGENVALUES.min(eigenvalues.len());
@@ -127,7 +135,9 @@ impl Spectra {
         }
     }
 
-    fn of(&self, operator: Operator) -> Option<&[f64]> {
+    /// What is shown of one operator.
+    #[must_use]
+    pub fn of(&self, operator: Operator) -> Option<&[f64]> {
         match operator {
             Operator::Fem => self.fem.as_deref(),
             Operator::Cot => self.cot.as_deref(),
@@ -172,7 +182,9 @@ impl Variation {
         answer.models.iter().find(|model| model.name == self.model)
     }
 
-    pub(super) fn section(&self) -> Section {
+    /// The figure: variants and class under both operators, as far as they are there.
+    #[must_use]
+    pub fn figure(&self) -> Figure {
         let panel = |title: &str, operator: Operator, of: &[Spectra], named: bool| Panel {
             title: title.to_owned(),
             x: Axis::linear("k").within(0.0, EIGENVALUES as f64),
@@ -192,27 +204,34 @@ impl Variation {
                 .collect(),
         };
         let (model, class) = (&self.model, &self.class);
-        let panels = vec![
+        let mut panels = vec![
             panel(&format!("(a) variants of {model}, FEM"), Operator::Fem, &self.variants, true),
             panel(&format!("(b) variants of {model}, cot"), Operator::Cot, &self.variants, true),
             panel(&format!("(c) the training models of {class}, FEM"), Operator::Fem, &self.members, false),
             panel(&format!("(d) the training models of {class}, cot"), Operator::Cot, &self.members, false),
         ];
+        panels.retain(|panel| !panel.layers.is_empty());
+        Figure { title: String::new(), panels, across: 2 }
+    }
+
+    pub(super) fn section(&self) -> Section {
+        let model = &self.model;
         let words = vec![format!(
             "The first {EIGENVALUES} eigenvalues of {model}, of variants made of it, and of its class: FEM divided by the \
              greatest, cot as they are. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
              zeros left out."
         )];
-        let figure = Figure { title: String::new(), panels, across: 2 };
         Section {
             heading: format!("Figure 1: Variation of the first {EIGENVALUES} eigenvalues"),
             words,
             table: Some(("figure-1-variation".to_owned(), self.table())),
-            figure: Some(("figure-1".to_owned(), figure)),
+            figure: Some(("figure-1".to_owned(), self.figure())),
         }
     }
 
-    fn table(&self) -> Table {
+    /// For each variant the mean over k of |λ − λ'|/λ' against the original λ', the zeros left out: of FEM and of cot.
+    #[must_use]
+    pub fn differences(&self) -> Vec<[Option<f64>; 2]> {
         let difference = |spectra: &Spectra, operator| {
             let (ours, theirs) = (spectra.of(operator)?, self.variants.first()?.of(operator)?);
             // Zeros are such to rounding.
@@ -221,18 +240,23 @@ impl Variation {
                 ours.iter().zip(theirs).filter(|(_, b)| **b > least).map(|(a, b)| (a - b).abs() / b).collect();
             (!terms.is_empty()).then(|| terms.iter().sum::<f64>() / terms.len() as f64)
         };
+        let both = |spectra: &Spectra| [Operator::Fem, Operator::Cot].map(|operator| difference(spectra, operator));
+        self.variants.iter().map(both).collect()
+    }
+
+    fn table(&self) -> Table {
         let cell = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::Number { value, decimals: 5 });
-        let row = |spectra: &Spectra| {
+        let row = |(spectra, [fem, cot]): (&Spectra, [Option<f64>; 2])| {
             vec![
                 Cell::Text(spectra.name.clone()),
                 Cell::Count(spectra.vertices as u64),
-                cell(difference(spectra, Operator::Fem)),
-                cell(difference(spectra, Operator::Cot)),
+                cell(fem),
+                cell(cot),
                 Cell::Text(spectra.why.clone().unwrap_or_default()),
             ]
         };
         let columns = ["variant", "vertices", "FEM", "cot", "why there is none"].map(String::from).to_vec();
         let title = format!("Mean relative difference of the first {EIGENVALUES} eigenvalues");
-        Table { number: 0, title, columns, rows: self.variants.iter().map(row).collect() }
+        Table { number: 0, title, columns, rows: self.variants.iter().zip(self.differences()).map(row).collect() }
     }
 }

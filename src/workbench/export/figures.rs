@@ -1,5 +1,6 @@
 //! The view as a figure for print, drawn from the same rows as the screen's.
 
+use super::experiment;
 use crate::{
     figure::{Axis, Dash, Figure, Layer, Mark, Panel, Style},
     query::{Finding, ModelRow, Parameter, Question},
@@ -9,7 +10,10 @@ use crate::{
         Curve, FirstK, Method,
         why::{Neighbours, Votes},
     },
-    workbench::{Answered, Figure as Shown, Matrix, State, Sweep, View, explore, parameters, pins, shape::Scene},
+    workbench::{
+        Answered, Figure as Shown, Matrix, State, Sweep, View, experiment::Face, explore, parameters, pins,
+        shape::Scene,
+    },
 };
 
 /// What a figure file is made of.
@@ -66,6 +70,7 @@ pub fn drawing(state: &State) -> Result<Drawing, String> {
     let none = || "this view has no figure; .csv, .json and .txt write its table".to_owned();
     let yet = |what: &str| format!("{what} not there yet");
     let figure = match state.view {
+        View::Curves if state.experiment.face != Face::Own => experiment::drawing(state)?,
         View::Overview | View::Curves => curves(state).ok_or_else(|| yet("the curves are"))?,
         View::Selection => selection(state).ok_or_else(|| yet("the selection is"))?,
         View::Models => spectrum(state).ok_or_else(|| yet("the model's spectrum is"))?,

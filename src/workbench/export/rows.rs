@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::{Table, figure};
+use super::{Table, experiment, figure};
 use crate::{
     dataset::Role,
     query::{Finding, ModelState, Question, Source},
     study::{Cell, Curve, Method, Score, why::Decisions},
-    workbench::{Answered, Figures, Matrix, State, View, pins},
+    workbench::{Answered, Figures, Matrix, State, View, experiment::Face, pins},
 };
 
 /// The table behind the view shown.
@@ -17,6 +17,7 @@ use crate::{
 pub fn table(state: &State) -> Result<Table, String> {
     let table = match state.view {
         View::Overview => methods(state),
+        View::Curves if state.experiment.face != Face::Own => experiment::table(state)?,
         View::Curves => curves(state).ok_or("the curves are not there yet")?,
         View::Tables => tables(state),
         View::Selection => selected(state),

@@ -77,6 +77,14 @@ fn in_views() -> Vec<Row> {
         ),
         (Views, vec![(Char('/'), Action::Find)], "", "list the models with a text in name or class", ""),
         (Views, vec![(Char('W'), Action::WriteView)], "", "write what the view shows: a figure or its table", ""),
+        (
+            Views,
+            vec![(Char('X'), Action::WritePaper)],
+            "",
+            "write the paper's document to a folder, or call it off",
+            "",
+        ),
+        (Views, vec![(Char('J'), Action::Journal)], "", "the journal: what the engine did, and how long it took", ""),
         (Views, vec![(Char('S'), Action::WriteRecipe)], "", "write the session as a recipe", ""),
         (Views, vec![(Char('C'), Action::Copy)], "", "copy what the view shows", ""),
         (Views, vec![(Char('L'), Action::Restore)], "", "take up the last session of the data set", ""),
@@ -93,6 +101,22 @@ fn in_one_view() -> Vec<Row> {
     vec![
         (In(View::Overview), vec![(Char('g'), Action::ToggleAxis)], "", "the k axis logarithmic or linear", "axis"),
         (In(View::Curves), vec![(Char('g'), Action::ToggleAxis)], "", "the k axis logarithmic or linear", "axis"),
+        (
+            In(View::Curves),
+            vec![(Char('f'), Action::TurnFace)],
+            "",
+            "Figures 3 and 6 of all spectra, Figure 7, Figure 1",
+            "figure",
+        ),
+        (
+            In(View::Curves),
+            vec![(Char(','), Action::StepSpectrum(-1)), (Char('.'), Action::StepSpectrum(1))],
+            "",
+            "the spectrum before, after in the list of all",
+            "spectrum",
+        ),
+        (In(View::Curves), vec![(Char('a'), Action::Switch)], "", "switch the spectrum, or Figure 1, on or off", "on"),
+        (In(View::Curves), vec![(Char('A'), Action::SwitchOff)], "", "switch all spectra off", ""),
         (
             In(View::Selection),
             vec![(Char('f'), Action::ToggleFigure)],
@@ -211,7 +235,7 @@ fn explaining() -> Vec<Row> {
 }
 
 fn elsewhere() -> Vec<Row> {
-    use Context::{Always, Entry, Help, Palette};
+    use Context::{Always, Entry, Help, Journal, Palette};
     use Key::{Char, Ctrl, Down, End, Enter, Esc, F, Home, Left, PageDown, PageUp, Right, Up};
     vec![
         (Entry, vec![(Enter, Action::Commit)], "", "take what was typed", "take it"),
@@ -240,6 +264,21 @@ fn elsewhere() -> Vec<Row> {
             "scroll",
         ),
         (Help, vec![(Home, Action::First), (End, Action::Last)], "", "to the beginning, to the end", ""),
+        (
+            Journal,
+            vec![(Up, Action::Up), (Down, Action::Down), (PageUp, Action::PageUp), (PageDown, Action::PageDown)],
+            "",
+            "scroll",
+            "scroll",
+        ),
+        (Journal, vec![(Home, Action::First), (End, Action::Last)], "", "to the newest line, to the oldest", ""),
+        (
+            Journal,
+            vec![(Esc, Action::Close), (Char('J'), Action::Close), (Char('q'), Action::Close)],
+            "",
+            "close the journal",
+            "close",
+        ),
         (
             Help,
             vec![(Esc, Action::Close), (Char('?'), Action::Close), (Char('q'), Action::Close), (F(1), Action::Close)],

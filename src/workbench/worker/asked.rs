@@ -89,9 +89,13 @@ impl Desk<'_> {
         let Some(first) = settings.first() else { return };
         let (host, recall, outbox) = (self.host.beside(first.clone()), self.recall.clone(), self.outbox.clone());
         let begun = std::thread::Builder::new().name("trial".into()).spawn(move || {
-            trial::run(host, settings, &recall, &|trial| {
+            let trying = |settings: &Settings, done: usize, total: usize| {
+                let _ = outbox.send(Message::Trying(settings.clone(), done, total));
+            };
+            let tell = |trial| {
                 let _ = outbox.send(Message::Trial(trial));
-            });
+            };
+            trial::run(host, settings, &recall, &tell, &trying);
         });
         if let Err(error) = begun {
             self.host.warn(&format!("the system has no thread to give: {error}"));
