@@ -34,6 +34,7 @@ mod history;
 pub mod journal;
 pub mod keymap;
 mod leave;
+pub mod lists;
 mod message;
 mod models;
 pub mod palette;

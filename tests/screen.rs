@@ -6,6 +6,8 @@
 mod experiment;
 #[path = "screen/figures.rs"]
 mod figures;
+#[path = "screen/lists.rs"]
+mod lists;
 #[path = "screen/replies.rs"]
 mod replies;
 #[path = "screen/sample.rs"]

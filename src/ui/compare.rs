@@ -24,9 +24,9 @@ use super::{
 };
 use crate::{
     query::Settings,
-    study::{Method, Score},
+    study::Method,
     workbench::{
-        Figures, State,
+        Figures, State, lists,
         pins::{self, Sweep},
     },
 };
@@ -65,13 +65,6 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     }
 }
 
-fn scores(figures: &Figures, method: Method, settings: &Settings) -> [Option<f64>; 4] {
-    let (error, adr) = (figures.error(method, settings), figures.adr(method, settings));
-    let train = |score: Option<Score>| score.map(|score| score.train);
-    let query = |score: Option<Score>| score.and_then(|score| score.query);
-    [train(error), query(error), train(adr), query(adr)]
-}
-
 fn selected(figures: &Figures, method: Method, settings: &Settings) -> String {
     let count = figures.selected(method, settings);
     count.map_or_else(
@@ -93,13 +86,15 @@ fn table(state: &State, pane: &mut Pane<'_>) {
     let after = end(3) + 2;
     pane.put(after, 1, &text::fit("selected", pane.width().saturating_sub(after) as usize), Role::Faint);
     let present = pins::present(state);
-    let now = scores(&present, method, &state.settings);
+    let now = present.scores(method, &state.settings);
     line(pane, 2, "now", now, &selected(&present, method, &state.settings));
-    for (place, pin) in (0_u16..).zip(&state.pins) {
-        let y = 3 + 2 * place;
-        let values = scores(&pin.figures, method, &pin.settings);
+    let at = state.pin.min(state.pins.len().saturating_sub(1));
+    for (line_of, place) in (0_u16..).zip(lists::pinned(state)) {
+        let pin = &state.pins[place];
+        let y = 3 + 2 * line_of;
+        let values = pin.figures.scores(method, &pin.settings);
         line(pane, y, &pin.letter.to_string(), values, &selected(&pin.figures, method, &pin.settings));
-        if place as usize == state.pin.min(state.pins.len() - 1) {
+        if place == at {
             let style = pane.style(Role::Chosen);
             pane.paint(ratatui::layout::Rect::new(0, y, 3, 1), style);
         }
@@ -157,7 +152,8 @@ fn differences(state: &State, differing: &[(crate::query::Parameter, Vec<String>
     {
         pane.put(x(column), 0, &name, Role::Faint);
     }
-    for (y, (parameter, values)) in (1..).zip(differing) {
+    let listed = differing.iter().filter(|(parameter, _)| state.order().takes([parameter.name()]));
+    for (y, (parameter, values)) in (1..).zip(listed) {
         pane.put(1, y, parameter.name(), Role::Plain);
         for (column, value) in (0..).zip(values) {
             let role = if *value == values[0] { Role::Plain } else { Role::Strong };
@@ -198,7 +194,7 @@ fn words(state: &State, swept: &Sweep, method: Method, pane: &mut Pane<'_>) {
             pane.put(17, y, "…", Role::Faint);
             continue;
         };
-        let [train, query, ..] = scores(figures, method, settings);
+        let [train, query, ..] = figures.scores(method, settings);
         let x = pane.spans(
             17,
             y,
@@ -219,7 +215,7 @@ fn curve(state: &State, swept: &Sweep, method: Method) -> Plot {
     let number = |text: &str| text.parse::<f64>().ok();
     let points = |side: usize| {
         let of = |((value, settings), figures): ((&String, &Settings), &Option<Figures>)| {
-            let score = scores(figures.as_ref()?, method, settings)[side]?;
+            let score = figures.as_ref()?.scores(method, settings)[side]?;
             Some((number(value)?, score))
         };
         swept.values.iter().zip(&swept.settings).zip(&swept.figures).filter_map(of).collect::<Vec<_>>()

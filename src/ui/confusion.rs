@@ -27,7 +27,7 @@ use crate::{
     dataset::Role as Member,
     query::{Finding, Question},
     study::why::Decisions,
-    workbench::{Answered, Matrix, State},
+    workbench::{Answered, Matrix, State, lists},
 };
 
 /// The least and the most columns of a class's name.
@@ -141,7 +141,13 @@ fn cells(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
         let own = row == truth;
         let name = text::fit(names::class(&state.answer, row), gutter as usize - 5);
         pane.put_right(3, y, &(row + 1).to_string(), if own { Role::Strong } else { Role::Faint });
-        pane.put(4, y, &name, if own { Role::Strong } else { Role::Plain });
+        // Rows that were not asked for by name step back.
+        let role = match (own, state.order().takes([state.class_name(row)])) {
+            (true, _) => Role::Strong,
+            (false, true) => Role::Plain,
+            (false, false) => Role::Faint,
+        };
+        pane.put(4, y, &name, role);
         let all: u32 = matrix.counts[row].iter().sum();
         for column in first_column..first_column + columns {
             let count = matrix.counts[row][column];
@@ -182,12 +188,13 @@ fn cell_in_words(state: &State, matrix: &Matrix) -> String {
 fn worst(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
     let said = format!("{} of {} in the wrong class", matrix.wrong, matrix.total);
     pane.put(1, 0, &text::fit(&said, (pane.width() as usize).saturating_sub(2)), Role::Strong);
+    let listed = lists::confusions(state, matrix);
     let most = matrix.worst.first().map_or(1, |(.., count)| *count);
     let room = (pane.width() as usize).saturating_sub(4 + 9);
-    let at = matrix.worst.iter().position(|&(truth, decided, _)| (truth, decided) == state.why.cell);
+    let at = listed.iter().position(|&(truth, decided, _)| (truth, decided) == state.why.cell);
     let rows = (pane.height() as usize).saturating_sub(2);
     let first = at.map_or(0, |at| at.saturating_sub(rows.saturating_sub(1)));
-    for (y, &(truth, decided, count)) in (1..).zip(matrix.worst.iter().skip(first).take(rows)) {
+    for (y, &(truth, decided, count)) in (1..).zip(listed.iter().skip(first).take(rows)) {
         let (own, other) = (names::class(&state.answer, truth), names::class(&state.answer, decided));
         let (bar, _) = footer::bar(f64::from(count) / f64::from(most), 6);
         let pair = text::left(&format!("{own} → {other}"), room);

@@ -11,7 +11,7 @@
 use ratatui::style::Modifier;
 
 use super::{look::Role, number, pane::Pane, text};
-use crate::workbench::{Entry, Notice, Purpose, State, experiment::Document, keymap, parameters};
+use crate::workbench::{Entry, Notice, Purpose, State, View, experiment::Document, keymap, lists, parameters};
 
 /// One or two lines, as high as the pane.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
@@ -56,10 +56,15 @@ fn writing(document: &Document, pane: &mut Pane<'_>) {
 
 fn progress(state: &State, pane: &mut Pane<'_>) {
     let progress = &state.answer.progress;
-    let out = match progress.out {
+    let mut out = match progress.out {
         0 => String::new(),
         out => format!("{out} out"),
     };
+    // A list that does not show everything as it is says so.
+    let order = text::fit(&text::clean(&state.order().said(&lists::columns(state))), pane.width() as usize / 2);
+    if !order.is_empty() {
+        out = if out.is_empty() { order } else { format!("{order}  {out}") };
+    }
     pane.put_right(pane.width().saturating_sub(1), 0, &out, Role::Warn);
     if progress.total == 0 {
         pane.put(1, 0, "reading the data set", Role::Faint);
@@ -115,7 +120,8 @@ fn typing(state: &State, entry: &Entry, pane: &mut Pane<'_>) {
     let (before, after) = entry.parts();
     let (name, sign) = match state.purpose {
         Purpose::Value => (state.parameter.name(), " = "),
-        Purpose::Needle => ("models with", " "),
+        Purpose::Needle if state.view == View::Models => ("models with", " "),
+        Purpose::Needle => ("lines with", " "),
         Purpose::File => ("write to", " "),
         Purpose::Folder => ("write the paper's document to the folder", " "),
     };

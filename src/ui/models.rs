@@ -74,6 +74,9 @@ fn heading(state: &State, listed: usize, pane: &mut Pane<'_>) {
     if list.sort != Sort::default() {
         said = format!("{said}, {}", list.sort.name());
     }
+    if list.reversed {
+        said += ", reversed";
+    }
     let at = format!("{}/{listed}", (list.at + 1).min(listed));
     let room = (pane.width() as usize).saturating_sub(at.len() + 3);
     pane.put(1, 0, &text::fit(&said, room), Role::Strong);

@@ -29,7 +29,7 @@ use crate::{
     dataset::Role as Member,
     query::{Finding, ModelRow, Question},
     study::why::{Neighbours, Votes},
-    workbench::{Answered, State, Why, first_pictured, pictured, shape::THUMB},
+    workbench::{Answered, State, Why, first_pictured, lists, pictured, shape::THUMB},
 };
 
 mod terms;
@@ -175,10 +175,16 @@ fn ranked(state: &State, reasons: Reasons<'_>, at: usize, pane: &mut Pane<'_>) {
         pane.put(1, 0, "nothing is selected, so nothing is near", Role::Faint);
         return;
     }
-    let first = at.saturating_sub(rows / 2).min(count.saturating_sub(rows));
+    let listed = match reasons {
+        Reasons::Neighbours(found, places) => lists::ranks(state, found, places),
+        Reasons::Votes(votes) => lists::voted(state, votes),
+    };
+    let line = listed.iter().position(|rank| *rank == at).unwrap_or(0);
+    let first = line.saturating_sub(rows / 2).min(listed.len().saturating_sub(rows));
+    let listed: Vec<usize> = listed.into_iter().skip(first).take(rows).collect();
     match reasons {
-        Reasons::Neighbours(found, places) => neighbours(state, found, places, (first, rows, at), pane),
-        Reasons::Votes(votes) => classes(state, votes, (first, rows, at), pane),
+        Reasons::Neighbours(found, places) => neighbours(state, found, places, (&listed, at), pane),
+        Reasons::Votes(votes) => classes(state, votes, (&listed, at), pane),
     }
 }
 
@@ -186,7 +192,7 @@ fn neighbours(
     state: &State,
     found: &Neighbours,
     places: &[usize],
-    (first, rows, at): (usize, usize, usize),
+    (listed, at): (&[usize], usize),
     pane: &mut Pane<'_>,
 ) {
     let names = Names::new(&state.answer);
@@ -201,8 +207,9 @@ fn neighbours(
     pane.put(name_at, 0, "nearest", Role::Faint);
     pane.put(class_at, 0, "class", Role::Faint);
     pane.put_right(distance_end, 0, "distance", Role::Faint);
-    let scale = found.found.iter().take(first + rows).next_back().map_or(1.0, |last| last.distance);
-    for (y, (place, neighbour)) in (1..).zip(found.found.iter().enumerate().skip(first).take(rows)) {
+    let scale = listed.iter().map(|&rank| found.found[rank].distance).fold(0.0, f64::max);
+    for (y, &place) in (1..).zip(listed) {
+        let neighbour = &found.found[place];
         let own = neighbour.class == found.class;
         let (mark, role) = if own { ("✓", Role::Good) } else { ("×", Role::Bad) };
         pane.put_right(4, y, &(place + 1).to_string(), Role::Faint);
@@ -219,14 +226,15 @@ fn neighbours(
     }
 }
 
-fn classes(state: &State, votes: &Votes, (first, rows, at): (usize, usize, usize), pane: &mut Pane<'_>) {
+fn classes(state: &State, votes: &Votes, (listed, at): (&[usize], usize), pane: &mut Pane<'_>) {
     let width = pane.width() as usize;
     let name = width.saturating_sub(7 + 9 + 8).clamp(5, 24);
     let end = 7 + name as u16;
     pane.put(7, 0, "class", Role::Faint);
     pane.put_right(end + 8, 0, "S", Role::Faint);
     pane.put_right(end + 15, 0, "p", Role::Faint);
-    for (y, (place, vote)) in (1..).zip(votes.votes.iter().enumerate().skip(first).take(rows)) {
+    for (y, &place) in (1..).zip(listed) {
+        let vote = &votes.votes[place];
         let own = vote.class == votes.class;
         let (mark, role) = if own { ("✓", Role::Good) } else { ("×", Role::Bad) };
         pane.put_right(4, y, &(place + 1).to_string(), Role::Faint);

@@ -26,7 +26,7 @@ use crate::{
     query::{Part, Stage, StageRow},
     selection::SelCount,
     study::{Climbed, Score},
-    workbench::State,
+    workbench::{State, View, lists},
 };
 
 /// The view.
@@ -95,7 +95,18 @@ fn methods(state: &State, pane: &mut Pane<'_>) {
     }
     let count_at = (from + name + 4 * FIGURE + 2) as u16;
     pane.put(count_at, 0, &text::fit("selected", wide.saturating_sub(count_at as usize)), Role::Faint);
-    for (y, method) in (1..).zip(rows(state)) {
+    let mut rows = rows(state);
+    state.lists[View::Overview as usize].sort(&mut rows, |by, a, b| {
+        let (error, train) = (by < 3, by % 2 == 1);
+        let score = |method: &Method| {
+            let score = if error { method.error } else { method.adr };
+            // The best first: the least ε, the greatest ADR.
+            let score = if train { score.map(|score| score.train) } else { score.and_then(|score| score.query) };
+            score.map(|score| if error { score } else { -score })
+        };
+        lists::ascending(score(a), score(b))
+    });
+    for (y, method) in (1..).zip(rows) {
         pane.put(from as u16, y, &text::left(&method.name, name), Role::Plain);
         let (error, adr) = (number::score(method.error), number::score(method.adr));
         let figures = [(error.0, Role::Train), (error.1, Role::Query), (adr.0, Role::Train), (adr.1, Role::Query)];

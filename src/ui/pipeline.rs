@@ -31,7 +31,7 @@ use super::{
 };
 use crate::{
     query::{Stage, StageRow},
-    workbench::{State, View, parameters},
+    workbench::{State, View, lists, parameters},
 };
 
 /// Columns of the tree.
@@ -98,11 +98,16 @@ fn table(state: &State, pane: &mut Pane<'_>) {
     let (memory, stale, failed) = if wide { ("memory", "stale", "failed") } else { ("mem", "todo", "out") };
     let heads = ["ran", memory, "disk", stale, failed, "time", "saved"];
     let lit = state.changed.as_ref().map_or(&[][..], |change| &change.stages);
+    let listing = &state.lists[View::Pipeline as usize];
+    // The tree is one in its own order alone.
+    let own = listing.by == 0 && !listing.reversed;
+    let tree = |stage: Stage| if own { branch(stage) } else { "" };
     let cursor = (state.view == View::Pipeline).then_some(state.stage);
     for (column, head) in heads.into_iter().enumerate() {
         pane.put_right(end(column), 0, head, Role::Faint);
     }
-    for (y, row) in (1..).zip(&state.answer.stages) {
+    for (y, place) in (1..).zip(lists::stages(state)) {
+        let row = &state.answer.stages[place];
         let (mark, role) = mark(state, row);
         let changed = lit.contains(&row.stage);
         let name = if changed { Role::Strong } else { Role::Plain };
@@ -112,7 +117,7 @@ fn table(state: &State, pane: &mut Pane<'_>) {
         let x = pane.spans(
             1,
             y,
-            [(branch(row.stage), Role::Faint), (mark, role), (" ", Role::Plain), (row.stage.name(), name)],
+            [(tree(row.stage), Role::Faint), (mark, role), (" ", Role::Plain), (row.stage.name(), name)],
         );
         if parameters::invalidates(state.parameter).contains(&row.stage) {
             pane.put(x, y, if x + 1 < NAME { " ‹" } else { "‹" }, Role::Strong);
@@ -128,7 +133,7 @@ fn table(state: &State, pane: &mut Pane<'_>) {
         let saved = if row.saved > 0.0 { (number::seconds(row.saved), Role::Good) } else { none() };
         pane.put_right(end(5), y, &spent.0, spent.1);
         pane.put_right(end(6), y, &saved.0, saved.1);
-        if cursor == Some(y as usize - 1) {
+        if cursor == Some(place) {
             let style = pane.style(Role::Chosen);
             pane.paint(Rect::new(1, y, pane.width().saturating_sub(1), 1), style);
         }
@@ -173,6 +178,7 @@ fn warnings(state: &State, pane: &mut Pane<'_>) {
     let lines: Vec<(bool, String)> = warnings
         .iter()
         .rev()
+        .filter(|warning| state.lists[View::Pipeline as usize].takes([warning.as_str()]))
         .flat_map(|warning| text::wrap(warning, room).into_iter().enumerate().map(|(n, line)| (n == 0, line)))
         .collect();
     // The last line says that there is more.

@@ -23,7 +23,7 @@ use super::{
 use crate::{
     query::Stage,
     study::Mark,
-    workbench::{ALL_FIGURES, Figure, State},
+    workbench::{ALL_FIGURES, Figure, State, View},
 };
 
 pub(super) use self::bands::unit;
@@ -107,8 +107,14 @@ fn strongest(state: &State, pane: &mut Pane<'_>) {
         format!("{} {}: {}, by weight α", class + 1, text::clean(name), number::count(marks.len(), "eigenvalue"));
     pane.put(1, 0, &text::fit(&said, (pane.width() as usize).saturating_sub(2)), Role::Strong);
     let mut order: Vec<&Mark> = marks.iter().collect();
+    let most = order.iter().map(|mark| mark.alpha).fold(f64::MIN_POSITIVE, f64::max);
     order.sort_by(|a, b| b.alpha.total_cmp(&a.alpha));
-    let most = order.first().map_or(1.0, |mark| mark.alpha).max(f64::MIN_POSITIVE);
+    let listing = &state.lists[View::Selection as usize];
+    order.retain(|mark| listing.takes([mark.index.to_string().as_str()]));
+    listing.sort(&mut order, |by, a, b| match by {
+        1 => a.index.cmp(&b.index),
+        _ => (a.high - a.low).total_cmp(&(b.high - b.low)),
+    });
     let rows = pane.height() as usize - 1;
     let columns = (pane.width() as usize / COLUMN).max(1);
     let scroll = state.scroll.min(order.len().saturating_sub(rows * columns));

@@ -21,7 +21,7 @@ use super::{
 use crate::{
     query::Stage,
     study::{Cell, Table},
-    workbench::State,
+    workbench::{State, View, lists},
 };
 
 /// Columns between two columns of a table.
@@ -39,7 +39,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let note = note(state, state.stale(&state.answer.tables, Stage::Tables));
     let across = if pane.width() >= 150 { 2 } else { 1 };
     let width = pane.width() / across;
-    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(table, note, width)).collect();
+    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(state, table, note, width)).collect();
     // In reading order, each line of tables as high as its highest.
     let lines: Vec<(&[Sheet], u16)> = sheets
         .chunks(across as usize)
@@ -87,11 +87,12 @@ struct Sheet {
 }
 
 impl Sheet {
-    fn new(table: &Table, note: Note, width: u16) -> Self {
+    fn new(state: &State, table: &Table, note: Note, width: u16) -> Self {
         let room = (width as usize).saturating_sub(2);
         let title = text::wrap(&tight(&format!("Table {}: {}", table.number, table.title)), room);
         let columns: Vec<String> = table.columns.iter().map(|head| tight(head)).collect();
-        let rows: Vec<Vec<String>> = table.rows.iter().map(|row| row.iter().map(number::cell).collect()).collect();
+        let rows: Vec<Vec<String>> =
+            listed(state, table).into_iter().map(|row| row.iter().map(number::cell).collect()).collect();
         let words = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
         let widths = widths(&columns, &rows, room);
         let heads: Vec<Vec<String>> =
@@ -146,6 +147,35 @@ impl Sheet {
             };
             x = pane.styled(x, y, &shown, style) + GAP as u16;
         }
+    }
+}
+
+/// The rows of a table as they are listed.
+fn listed<'a>(state: &State, table: &'a Table) -> Vec<&'a Vec<Cell>> {
+    let order = &state.lists[View::Tables as usize];
+    let named = |row: &&Vec<Cell>| {
+        let words = row.iter().filter_map(|cell| if let Cell::Text(text) = cell { Some(text.as_str()) } else { None });
+        order.takes(words)
+    };
+    let mut rows: Vec<&Vec<Cell>> = table.rows.iter().filter(named).collect();
+    // A table without the column stays as it is.
+    let heads = lists::columns(state);
+    let column = heads.get(order.by).and_then(|head| table.columns.iter().position(|own| own == head));
+    order.sort(&mut rows, |_, a, b| {
+        column.map_or(std::cmp::Ordering::Equal, |column| compare(a.get(column), b.get(column)))
+    });
+    rows
+}
+
+/// Numbers by their value, words by their letters, what is missing last.
+fn compare(a: Option<&Cell>, b: Option<&Cell>) -> std::cmp::Ordering {
+    let number = |cell: Option<&Cell>| match cell? {
+        Cell::Text(_) => None,
+        cell => number::cell(cell).replace('−', "-").parse::<f64>().ok(),
+    };
+    match (a, b) {
+        (Some(Cell::Text(a)), Some(Cell::Text(b))) => a.cmp(b),
+        (a, b) => lists::ascending(number(a), number(b)),
     }
 }
 

@@ -73,8 +73,10 @@ pub enum Action {
     CompareNone,
     /// List other models: all of them, those with a defect, and so on.
     CycleFilter,
-    /// List them in another order.
+    /// List what the view lists in another order.
     CycleSort,
+    /// List it the other way round.
+    ReverseSort,
     /// List all models.
     ListAll,
     /// Explain another method, so many places further.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Answered, Entry, Figure, Filter, Only, Purpose, Sort, State, Sweep, View, Why, pins, shape::Camera, update,
+    Action, Answered, Figure, Filter, Only, Sort, State, Sweep, View, Why, lists, pins, shape::Camera, update,
     why::Matrix,
 };
 use crate::{
@@ -19,7 +19,8 @@ pub(super) fn look(state: &mut State, action: &Action) {
     let classes = state.answer.classes.len();
     match action {
         Action::CycleFilter => change(state, |list| list.filter = list.filter.next()),
-        Action::CycleSort => change(state, |list| list.sort = list.sort.next()),
+        Action::CycleSort => lists::cycle(state, false),
+        Action::ReverseSort => lists::cycle(state, true),
         Action::ListAll => {
             change(state, |list| (list.filter, list.only, list.needle) = Default::default());
         }
@@ -37,11 +38,7 @@ pub(super) fn look(state: &mut State, action: &Action) {
         Action::TurnFunction(by) => turn_function(state, *by),
         Action::Eigenfunction(index) => state.function = Some((*index).clamp(1, state.settings.kmax)),
         Action::NoFunction => state.function = None,
-        Action::Find => {
-            update::show(state, View::Models);
-            state.purpose = Purpose::Needle;
-            state.entry = Some(Entry::default());
-        }
+        Action::Find => lists::begin_to_find(state),
         Action::LookAt(model) => look_at(state, *model),
         Action::Pin | Action::Unpin | Action::Sweep | Action::ToggleSweep => compare(state, action),
         Action::ToggleStyle => state.style = state.style.turned(),
@@ -97,11 +94,6 @@ fn compare(state: &mut State, action: &Action) {
     }
 }
 
-/// Lists the models that have this in their name or class.
-pub(super) fn find(state: &mut State, needle: String) {
-    change(state, |list| list.needle = needle);
-}
-
 /// The first eigenfunction shown is that of the first eigenvalue selected that is not 0.
 fn turn_function(state: &mut State, by: isize) {
     let selected = || state.answer.climb_error.value.as_ref()?.climb.selected.iter().copied().find(|&index| index > 1);
@@ -111,7 +103,7 @@ fn turn_function(state: &mut State, by: isize) {
     };
 }
 
-fn change(state: &mut State, change: impl FnOnce(&mut super::ModelList)) {
+pub(super) fn change(state: &mut State, change: impl FnOnce(&mut super::ModelList)) {
     let answer = Arc::clone(&state.answer);
     state.models.change(&answer, change);
 }
@@ -258,8 +250,20 @@ pub(super) fn neighbours(state: &State) -> Option<(usize, Vec<usize>)> {
 }
 
 pub(super) fn shift_neighbour(state: &mut State, by: isize) {
-    let last = neighbours(state).map_or(0, |(count, _)| count.saturating_sub(1));
-    state.why.neighbour = state.why.neighbour.min(last).saturating_add_signed(by).min(last);
+    let listed = listed_neighbours(state);
+    let at = listed.iter().position(|rank| *rank == state.why.neighbour).unwrap_or(0);
+    let next = at.saturating_add_signed(by).min(listed.len().saturating_sub(1));
+    state.why.neighbour = listed.get(next).copied().unwrap_or(0);
+}
+
+/// The ranks of the neighbours, or of the classes for AdaBoost, in the order in which they are listed.
+fn listed_neighbours(state: &State) -> Vec<usize> {
+    let Some(model) = state.model() else { return Vec::new() };
+    match state.answered(&Question::Reasons { method: state.why.method, model }) {
+        Answered::Found(Finding::Neighbours(found), places, _) => lists::ranks(state, found, places),
+        Answered::Found(Finding::Votes(votes), ..) => lists::voted(state, votes),
+        _ => Vec::new(),
+    }
 }
 
 fn open_neighbour(state: &mut State) {

@@ -159,6 +159,8 @@ pub struct ModelList {
     pub needle: String,
     /// The order.
     pub sort: Sort,
+    /// The other way round.
+    pub reversed: bool,
     /// Position in the list; may lie beyond its end after the list became shorter.
     pub at: usize,
 }
@@ -179,6 +181,9 @@ impl ModelList {
             .filter(|index| chosen(index) && self.filter.takes(&answer.models[*index]) && named(&answer.models[*index]))
             .collect();
         listed.sort_by(|&a, &b| self.sort.compare(&answer.models[a], &answer.models[b]));
+        if self.reversed {
+            listed.reverse();
+        }
         listed
     }
 
@@ -201,7 +206,7 @@ impl ModelList {
         if let Some(at) = find(self) {
             self.at = at;
         } else {
-            *self = Self { sort: self.sort, ..Self::default() };
+            *self = Self { sort: self.sort, reversed: self.reversed, ..Self::default() };
             self.at = find(self).unwrap_or(0);
         }
     }

@@ -20,6 +20,12 @@ pub struct Pin {
     pub figures: Figures,
 }
 
+/// ε of a method on D and on Q, its mean ADR on D and on Q, of a pin.
+#[must_use]
+pub fn scores(pin: &Pin, method: Method) -> [Option<f64>; 4] {
+    pin.figures.scores(method, &pin.settings)
+}
+
 /// A sweep over one parameter, as it fills.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {

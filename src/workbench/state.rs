@@ -6,6 +6,7 @@ use super::{
     Entry, History, ModelList, Palette, Pin, Replies, Sweep, Why,
     experiment::Experiment,
     journal::Journal,
+    lists::Order,
     parameters,
     recipe::Loaded,
     shape::{Camera, Pictures, Scene, Style},
@@ -203,6 +204,8 @@ pub struct State {
     pub changed: Option<Change>,
     /// The stage of the pipeline that the keys act on.
     pub stage: usize,
+    /// How each view lists, in the order of [`View::ALL`].
+    pub lists: [Order; View::ALL.len()],
     /// The eigenfunction that colours the shape, the index of its eigenvalue from 1.
     pub function: Option<usize>,
     /// The command palette, while it is open.
@@ -272,6 +275,7 @@ impl State {
             asked: Vec::new(),
             replies: Replies::default(),
             looked_for: Vec::new(),
+            lists: Default::default(),
             changed: None,
             stage: 0,
             function: None,

@@ -80,6 +80,15 @@ impl Figures {
         }
     }
 
+    /// ε of a method on D and on Q, its mean ADR on D and on Q.
+    #[must_use]
+    pub fn scores(&self, method: Method, settings: &Settings) -> [Option<f64>; 4] {
+        let (error, adr) = (self.error(method, settings), self.adr(method, settings));
+        let train = |score: Option<Score>| score.map(|score| score.train);
+        let query = |score: Option<Score>| score.and_then(|score| score.query);
+        [train(error), query(error), train(adr), query(adr)]
+    }
+
     /// How many eigenvalues a method uses.
     #[must_use]
     pub fn selected(&self, method: Method, settings: &Settings) -> Option<f64> {

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use super::{
     Action, Change, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, experiment,
-    explore, leave, palette, parameters, pins,
+    explore, leave, lists, palette, parameters, pins,
 };
-use crate::query::{Answer, Parameter, Settings, Stage};
+use crate::query::{Answer, Parameter, Settings};
 
 /// Lets an action happen. Returns what must now happen outside; never waits.
 pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
@@ -140,7 +140,7 @@ fn look(state: &mut State, action: &Action) {
         Action::StepSpectrum(by) => experiment::step(state, *by),
         Action::Close => {
             if state.entry.is_some() && state.purpose == Purpose::Needle {
-                explore::find(state, String::new());
+                lists::find(state, String::new());
             }
             state.help = None;
             state.told = None;
@@ -205,7 +205,10 @@ fn choose(state: &mut State, parameter: Parameter) {
 /// One line up or down: in the help, in the list of models, else in the panel of parameters.
 fn step(state: &mut State, by: isize) {
     if state.view == View::Pipeline && state.help.is_none() && state.palette.is_none() {
-        state.stage = state.stage.saturating_add_signed(by).min(Stage::ALL.len() - 1);
+        let listed = lists::stages(state);
+        let at = listed.iter().position(|place| *place == state.stage).unwrap_or(0);
+        let next = at.saturating_add_signed(by).min(listed.len().saturating_sub(1));
+        state.stage = listed.get(next).copied().unwrap_or(0);
         return;
     }
     let lists = matches!(state.view, View::Models | View::Neighbours | View::Compare);
@@ -239,8 +242,10 @@ fn scroll(state: &mut State, by: isize) {
     } else if state.view == View::Neighbours {
         explore::shift_neighbour(state, by);
     } else if state.view == View::Compare {
-        let last = state.pins.len().saturating_sub(1);
-        state.pin = state.pin.min(last).saturating_add_signed(by).min(last);
+        let listed = lists::pinned(state);
+        let at = listed.iter().position(|place| *place == state.pin).unwrap_or(0);
+        let next = at.saturating_add_signed(by).min(listed.len().saturating_sub(1));
+        state.pin = listed.get(next).copied().unwrap_or(0);
     } else {
         state.scroll = state.scroll.saturating_add_signed(by).min(furthest(state));
     }
@@ -350,7 +355,7 @@ fn typed(state: &mut State, action: &Action) {
     }
     if let Some(entry) = state.entry.as_ref().filter(|_| state.purpose == Purpose::Needle) {
         let needle = entry.text();
-        explore::find(state, needle);
+        lists::find(state, needle);
     }
 }
 

@@ -75,7 +75,14 @@ fn in_views() -> Vec<Row> {
             "every command, and any class, model or eigenvalue",
             "find",
         ),
-        (Views, vec![(Char('/'), Action::Find)], "", "list the models with a text in name or class", ""),
+        (Views, vec![(Char('/'), Action::Find)], "", "list only what has a text in its name or class", ""),
+        (
+            Views,
+            vec![(Char('v'), Action::CycleSort), (Char('V'), Action::ReverseSort)],
+            "",
+            "list in another order, the other way round",
+            "",
+        ),
         (Views, vec![(Char('W'), Action::WriteView)], "", "write what the view shows: a figure or its table", ""),
         (
             Views,

@@ -90,6 +90,7 @@ fn every_action_of_a_key_is_bound() {
         Action::CompareNone,
         Action::CycleFilter,
         Action::CycleSort,
+        Action::ReverseSort,
         Action::ListAll,
         Action::TurnMethod(1),
         Action::CycleSide,
