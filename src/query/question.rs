@@ -20,7 +20,7 @@ use crate::{
     spectrum,
     study::{
         Honest, Method, Retrieved,
-        why::{Decisions, Neighbours, Shared, Votes},
+        why::{Apart, Decisions, Neighbours, Shared, Votes},
     },
     watch::Unwatched,
 };
@@ -39,6 +39,13 @@ pub enum Question {
     },
     /// Where the models of a class, an index, keep together.
     Shared(usize),
+    /// Which eigenvalues tell two classes, two indices, apart.
+    Apart {
+        /// The class.
+        class: usize,
+        /// The other one.
+        other: usize,
+    },
     /// How well each scheme of Table 5 retrieves.
     Retrieval,
     /// How much of each method's error is selection bias.
@@ -65,6 +72,8 @@ pub enum Finding {
     Votes(Arc<Votes>),
     /// Of [`Question::Shared`].
     Shared(Arc<Shared>),
+    /// Of [`Question::Apart`].
+    Apart(Arc<Apart>),
     /// Of [`Question::Retrieval`].
     Retrieval(Arc<Vec<Retrieved>>),
     /// Of [`Question::Honest`].
@@ -141,6 +150,7 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
             reasons::neighbour_rows(db, cohort, method, row(model)?).map(Finding::Neighbours)
         }
         Question::Shared(class) => reasons::shared_rows(db, cohort, class).map(Finding::Shared),
+        Question::Apart { class, other } => reasons::apart_rows(db, cohort, class, other).map(Finding::Apart),
         Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
         Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
         Question::Shape(_) | Question::Function { .. } => Err("a surface is read from its file".into()),

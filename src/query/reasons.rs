@@ -12,7 +12,7 @@ use crate::{
     selection::Cost,
     study::{
         Method,
-        why::{self, Decisions, Neighbours, Shared, Votes},
+        why::{self, Apart, Decisions, Neighbours, Shared, Votes},
     },
 };
 
@@ -79,4 +79,18 @@ pub(crate) fn shared_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>, class: usiz
     let found = why::shared(&sample, class, Knobs::get(db).kmax(db));
     trace(db).executed(Query::SharedRows);
     found.map(Arc::new).ok_or_else(|| "the class has fewer than two training models that take part".into())
+}
+
+/// Which of the first kmax eigenvalues tell two classes apart.
+#[salsa::tracked(returns(clone), lru = 64)]
+pub(crate) fn apart_rows<'db>(
+    db: &'db dyn Db,
+    cohort: Cohort<'db>,
+    class: usize,
+    other: usize,
+) -> Result<Arc<Apart>, Failure> {
+    let sample = sample(db, wide(db, cohort))?;
+    let found = why::apart(&sample, class, other, Knobs::get(db).kmax(db));
+    trace(db).executed(Query::ApartRows);
+    found.map(Arc::new).ok_or_else(|| "one of the classes has no training model that takes part".into())
 }

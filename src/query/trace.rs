@@ -45,6 +45,8 @@ pub enum Query {
     VoteRows,
     /// Where the models of a class keep together.
     SharedRows,
+    /// Which eigenvalues tell two classes apart.
+    ApartRows,
     /// Table 5 and Figure 7.
     RetrievalRows,
     /// Nested cross-validation.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 pub use self::{
+    apart::{Apart, apart},
     bands::{Band, Shared, shared},
     neighbours::{Neighbour, Neighbours, neighbours},
     votes::{Vote, Votes, votes},
@@ -15,6 +16,7 @@ pub use self::{
 use super::Boosted;
 use crate::metrics::{Distance, Exam, Sample};
 
+mod apart;
 mod bands;
 mod neighbours;
 mod votes;

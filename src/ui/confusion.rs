@@ -33,6 +33,9 @@ use crate::{
 /// The least and the most columns of a class's name.
 const NAME: (u16, u16) = (6, 14);
 
+/// Columns of how many of a class are wrong.
+const WRONG: u16 = 7;
+
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let method = state.why.method;
@@ -52,7 +55,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
     let head = pane::cut_top(&mut rest, 1);
     title(state, decisions, stale, &mut pane.part(head));
-    let wanted = gutter(state) + cell(&matrix) * matrix.counts.len() as u16 + 1;
+    let wanted = gutter(state) + cell(&matrix) * matrix.counts.len() as u16 + WRONG + 1;
     let classes = matrix.counts.len() as u16;
     let roomy = rest.height >= 12 && rest.width >= wanted + 34;
     if roomy {
@@ -80,6 +83,10 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         cells(state, &matrix, &mut pane.part(rest));
         let mut below = pane.part(below);
         let y = below.height().saturating_sub(1);
+        let room = (below.width() as usize).saturating_sub(2);
+        if y > 0 {
+            below.put(1, 0, &text::fit(&most_confused(state, &matrix), room), Role::Plain);
+        }
         let said = cell_in_words(state, &matrix);
         below.put(1, y, &text::fit(&said, (below.width() as usize).saturating_sub(2)), Role::Strong);
     }
@@ -137,8 +144,18 @@ fn cells(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
         }
         pane.put_right(x_of(column) + wide, 1, &(number % 10).to_string(), role);
     }
+    let end = x_of(first_column + columns) + WRONG;
+    let counted = columns == classes && end <= pane.width();
+    if counted {
+        pane.put_right(end, 1, "wrong", Role::Faint);
+    }
     for (y, row) in (2..).zip(first_row..first_row + rows) {
         let own = row == truth;
+        if counted {
+            let (wrong, _) = matrix.wrong_of(row);
+            let role = if matrix.most_confused() == Some(row) { Role::Bad } else { Role::Plain };
+            pane.put_right(end, y, &wrong.to_string(), if wrong == 0 { Role::Faint } else { role });
+        }
         let name = text::fit(names::class(&state.answer, row), gutter as usize - 5);
         pane.put_right(3, y, &(row + 1).to_string(), if own { Role::Strong } else { Role::Faint });
         // Rows that were not asked for by name step back.
@@ -184,17 +201,33 @@ fn cell_in_words(state: &State, matrix: &Matrix) -> String {
     }
 }
 
+/// The class that is wrong most often, and what its models are taken for.
+fn most_confused(state: &State, matrix: &Matrix) -> String {
+    let Some(class) = matrix.most_confused() else { return "every model is recognised".to_owned() };
+    let (wrong, all) = matrix.wrong_of(class);
+    let others = matrix.taken_for(class);
+    let others = others.iter().map(|&(other, count)| format!("{} {count}", names::class(&state.answer, other)));
+    let own = names::class(&state.answer, class);
+    format!("most often wrong: {own}, {wrong} of {all}: {}", others.collect::<Vec<_>>().join(", "))
+}
+
 /// The fullest wrong cells.
 fn worst(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
     let said = format!("{} of {} in the wrong class", matrix.wrong, matrix.total);
-    pane.put(1, 0, &text::fit(&said, (pane.width() as usize).saturating_sub(2)), Role::Strong);
+    let wide = (pane.width() as usize).saturating_sub(2);
+    pane.put(1, 0, &text::fit(&said, wide), Role::Strong);
+    let lines = text::wrap(&most_confused(state, matrix), wide);
+    let high = if pane.height() >= 8 { lines.len().min(2) as u16 } else { 0 };
+    for (y, line) in (1..=high).zip(&lines) {
+        pane.put(1, y, line, Role::Plain);
+    }
     let listed = lists::confusions(state, matrix);
     let most = matrix.worst.first().map_or(1, |(.., count)| *count);
     let room = (pane.width() as usize).saturating_sub(4 + 9);
     let at = listed.iter().position(|&(truth, decided, _)| (truth, decided) == state.why.cell);
-    let rows = (pane.height() as usize).saturating_sub(2);
+    let rows = (pane.height() as usize).saturating_sub(2 + high as usize);
     let first = at.map_or(0, |at| at.saturating_sub(rows.saturating_sub(1)));
-    for (y, &(truth, decided, count)) in (1..).zip(listed.iter().skip(first).take(rows)) {
+    for (y, &(truth, decided, count)) in (1 + high..).zip(listed.iter().skip(first).take(rows)) {
         let (own, other) = (names::class(&state.answer, truth), names::class(&state.answer, decided));
         let (bar, _) = footer::bar(f64::from(count) / f64::from(most), 6);
         let pair = text::left(&format!("{own} → {other}"), room);

@@ -28,6 +28,7 @@ use crate::{
 
 pub(super) use self::bands::unit;
 
+mod apart;
 mod bands;
 mod climb;
 mod scatter;

@@ -69,6 +69,8 @@ pub enum Action {
     ToggleFigure,
     /// Compare the class shown with others, or no longer.
     Compare,
+    /// What tells the class of the cell from the class it is taken for.
+    TellApart,
     /// Compare no classes.
     CompareNone,
     /// List other models: all of them, those with a defect, and so on.

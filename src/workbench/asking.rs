@@ -57,7 +57,9 @@ pub fn questions(state: &State) -> Vec<Question> {
     let method = state.why.method;
     match state.view {
         View::Selection if state.figure == Figure::Shared || state.size.0 >= ALL_FIGURES => {
-            vec![Question::Shared(state.settings.class)]
+            let class = state.settings.class;
+            let apart = state.opposed().map(|other| Question::Apart { class, other });
+            std::iter::once(Question::Shared(class)).chain(apart).collect()
         }
         View::Confusion => vec![Question::Decisions(method)],
         View::Curves if experiment::asks_retrieval(state) => vec![Question::Retrieval],
@@ -174,7 +176,7 @@ impl State {
                 // More eigenvalues do not change those that are there.
                 Question::Function { .. } if parameter == Parameter::Kmax => return false,
                 Question::Function { .. } => Stage::Spectrum,
-                Question::Shared(_) => Stage::Features,
+                Question::Shared(_) | Question::Apart { .. } => Stage::Features,
                 // Every method has a part in them; what is only read off a method's rows has none.
                 Question::Retrieval | Question::Honest => {
                     return !matches!(parameter, Parameter::K | Parameter::Cost | Parameter::Sel | Parameter::Class);

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Answered, Figure, Filter, Only, Sort, State, Sweep, View, Why, lists, pins, shape::Camera, update,
+    Action, Answered, Effect, Figure, Filter, Only, Sort, State, Sweep, View, Why, lists, pins, shape::Camera, update,
     why::Matrix,
 };
 use crate::{
-    query::{Finding, Parameter, Question, Stage},
+    query::{Finding, Parameter, Question, Settings, Stage},
     study::Method,
 };
 
@@ -203,6 +203,21 @@ fn open_stage(state: &mut State) {
         }
     };
     update::show(state, view);
+}
+
+/// From a cell of the confusion matrix to the eigenvalues that tell its two classes apart.
+pub(super) fn tell_apart(state: &mut State) -> Vec<Effect> {
+    let (truth, decided) = state.why.cell;
+    if truth == decided || truth.max(decided) >= state.answer.classes.len() {
+        update::say(state, "move to a cell of two classes: . goes to the fullest");
+        return Vec::new();
+    }
+    remember(state);
+    state.compared = [decided].into();
+    state.figure = Figure::Shared;
+    update::show(state, View::Selection);
+    let next = Settings { class: truth, ..state.settings.clone() };
+    update::adopt(state, next, None)
 }
 
 fn open_cell(state: &mut State) {

@@ -103,7 +103,7 @@ pub enum Figure {
     Marks,
     /// The way that hill climbing took.
     Climb,
-    /// Where the class's models keep together.
+    /// Where the class's models keep together, or what tells them from those of the class compared.
     Shared,
 }
 
@@ -336,6 +336,12 @@ impl State {
         let count = self.answer.classes.len();
         let others = self.compared.iter().copied().filter(|class| *class != self.settings.class);
         std::iter::once(self.settings.class).chain(others).filter(|class| *class < count).collect()
+    }
+
+    /// The class that the parameter's class is told from, where one is compared with it.
+    #[must_use]
+    pub fn opposed(&self) -> Option<usize> {
+        self.shown_classes().get(1).copied()
     }
 
     /// The model that the list looks at.

@@ -106,6 +106,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Palette => state.palette = Some(Palette::default()),
         Action::Pick => return pick(state),
         Action::Set(parameter, value) => return set(state, parameter, &value),
+        Action::TellApart => return explore::tell_apart(state),
         Action::Recall => return recall(state),
         Action::Rescanned => {
             state.changed = Some(Change::of_files());

@@ -136,6 +136,37 @@ impl Matrix {
     }
 }
 
+impl Matrix {
+    /// Of a class: how many models are in the wrong class, and how many there are.
+    #[must_use]
+    pub fn wrong_of(&self, class: usize) -> (u32, u32) {
+        let row = self.counts.get(class).map_or(&[][..], Vec::as_slice);
+        let all: u32 = row.iter().sum();
+        (all - row.get(class).copied().unwrap_or(0), all)
+    }
+
+    /// The class with the greatest share of its models in the wrong class, the first of several; none when all are
+    /// right.
+    #[must_use]
+    pub fn most_confused(&self) -> Option<usize> {
+        let share = |class: usize| {
+            let (wrong, all) = self.wrong_of(class);
+            f64::from(wrong) / f64::from(all.max(1))
+        };
+        let classes = (0..self.counts.len()).filter(|&class| share(class) > 0.0);
+        classes.fold(None, |best: Option<usize>, class| match best {
+            Some(best) if share(best) >= share(class) => Some(best),
+            _ => Some(class),
+        })
+    }
+
+    /// The classes that a class is taken for, the most frequent first, with how often.
+    #[must_use]
+    pub fn taken_for(&self, class: usize) -> Vec<(usize, u32)> {
+        self.worst.iter().filter(|(truth, ..)| *truth == class).map(|&(_, decided, count)| (decided, count)).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
@@ -169,6 +200,8 @@ mod tests {
         let both = Matrix::new(Side::Both, &answer, &decisions, &places);
         assert_eq!((both.total, both.wrong, both.counts[0].as_slice()), (4, 3, [1, 3].as_slice()));
         assert_eq!(both.worst, [(0, 1, 3)]);
+        assert_eq!((both.wrong_of(0), both.wrong_of(1), both.wrong_of(9)), ((3, 4), (0, 0), (0, 0)));
+        assert_eq!((both.most_confused(), both.taken_for(0)), (Some(0), vec![(1, 3)]));
         assert_eq!(Matrix::new(Side::Query, &answer, &decisions, &places).worst, [(0, 1, 1)]);
         let mut why = Why { cell: (0, 1), ..Why::default() };
         assert_eq!(why.models(&answer, &decisions, &places), [1, 2, 3]);

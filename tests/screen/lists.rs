@@ -5,7 +5,7 @@ use eigenselect::{
     workbench::{Action, State, View, keymap, lists, update},
 };
 
-use super::{LARGE, MEDIUM, drawn, replies, sample};
+use super::{LARGE, MEDIUM, compare, drawn, replies, sample};
 
 fn at(view: View, size: (u16, u16)) -> State {
     let mut state = sample::state(sample::full());
@@ -116,4 +116,19 @@ fn the_cursor_goes_along_the_order_shown() {
     assert_eq!(lists::pinned(&state), [0, 1]);
     press(&mut state, "V");
     assert_eq!(lists::pinned(&state), [1, 0]);
+}
+
+#[test]
+fn from_a_wrong_cell_to_what_tells_its_classes_apart() {
+    let mut state = at(View::Confusion, MEDIUM);
+    assert!(drawn(&state, MEDIUM).contains("most often wrong: "));
+    press(&mut state, ".");
+    let (truth, decided) = state.why.cell;
+    press(&mut state, "a");
+    assert_eq!((state.view, state.settings.class, state.opposed()), (View::Selection, truth, Some(decided)));
+    let state = replies::served(state);
+    compare("Apart-120x40", &drawn(&state, MEDIUM));
+    let mut state = state;
+    update(&mut state, Action::Back);
+    assert_eq!(state.view, View::Confusion);
 }

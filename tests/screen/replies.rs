@@ -69,6 +69,9 @@ fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc
         Question::Shared(class) => why::shared(&sample, class, answer.settings.kmax)
             .map(|shared| Finding::Shared(Arc::new(shared)))
             .ok_or_else(|| "the class has fewer than two training models".into()),
+        Question::Apart { class, other } => why::apart(&sample, class, other, answer.settings.kmax)
+            .map(|apart| Finding::Apart(Arc::new(apart)))
+            .ok_or_else(|| "one of the classes has no training model".into()),
         Question::Shape(_) | Question::Function { .. } => Err("the file is not there".into()),
         Question::Retrieval => Ok(Finding::Retrieval(Arc::new(retrieved()))),
         Question::Honest => Err("there are no models to compare".into()),

@@ -8,14 +8,17 @@
 //!  λ2–5 0.94  λ9 0.88  λ13–14 0.71
 //! ```
 
-use super::super::{
-    dots::Stroke,
-    heading::{Note, heading, note, nothing},
-    look::Role,
-    names, number,
-    pane::{self, Pane},
-    plot::{Axis, Plot, Series},
-    text,
+use super::{
+    super::{
+        dots::Stroke,
+        heading::{Note, heading, note, nothing},
+        look::Role,
+        names, number,
+        pane::{self, Pane},
+        plot::{Axis, Plot, Series},
+        text,
+    },
+    apart,
 };
 use crate::{
     query::{Finding, Question},
@@ -25,6 +28,9 @@ use crate::{
 
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let class = state.settings.class;
+    if let Some(other) = state.opposed() {
+        return apart::draw(state, class, other, pane);
+    }
     let name = format!("{} {}", class + 1, text::clean(names::class(&state.answer, class)));
     let (shared, stale) = match state.answered(&Question::Shared(class)) {
         Answered::Found(Finding::Shared(shared), _, stale) => (shared, stale),
@@ -69,7 +75,7 @@ fn said(band: &Band) -> String {
     }
 }
 
-fn packed(words: &[String], room: usize) -> Vec<String> {
+pub(super) fn packed(words: &[String], room: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words {
         match lines.last_mut() {

@@ -147,7 +147,6 @@ fn in_one_view() -> Vec<Row> {
             "all, with defects, taking no part, not solved yet",
             "filter",
         ),
-        (In(View::Models), vec![(Char('v'), Action::CycleSort)], "", "list them in another order", "sort"),
         (In(View::Models), vec![(Char('a'), Action::ListAll)], "", "list all models", ""),
     ]
 }
@@ -189,6 +188,7 @@ fn explaining() -> Vec<Row> {
             "the fullest wrong cell, then the next",
             "worst",
         ),
+        (In(View::Confusion), vec![(Char('a'), Action::TellApart)], "", "what tells the cell's classes apart", "apart"),
         method(View::Confusion),
         (In(View::Confusion), vec![(Char('b'), Action::CycleSide)], "", "count D and Q, D alone, Q alone", "D/Q"),
         open(View::Neighbours, "go to the neighbour"),

@@ -91,6 +91,7 @@ fn every_action_of_a_key_is_bound() {
         Action::CycleFilter,
         Action::CycleSort,
         Action::ReverseSort,
+        Action::TellApart,
         Action::ListAll,
         Action::TurnMethod(1),
         Action::CycleSide,

@@ -1,0 +1,89 @@
+//! Which eigenvalues tell the class from the one it is compared with.
+//!
+//! ```text
+//!  1 human against 14 armadillo: 15 and 15 models
+//!   1.0 ┤   ⡇⡇              separation against index: 1 where every human lies above every armadillo
+//!   0.0 ┼⡇⡇⡇⡇⡇⣿⣿⡇
+//!  −1.0 ┤      ⡇⡇
+//!  λ4 +1.00  λ7 −0.98  λ9 −0.91
+//! ```
+
+use super::{
+    super::{
+        dots::Stroke,
+        heading::{Note, heading, note, nothing},
+        look::Role,
+        names,
+        pane::{self, Pane},
+        plot::{Axis, Plot, Series},
+        text,
+    },
+    shared::packed,
+};
+use crate::{
+    query::{Finding, Question},
+    study::why::Apart,
+    workbench::{Answered, State},
+};
+
+/// From this share of the strongest separation on a spike stands out.
+const STRONG: f64 = 0.9;
+
+pub(super) fn draw(state: &State, class: usize, other: usize, pane: &mut Pane<'_>) {
+    let name = |class: usize| format!("{} {}", class + 1, text::clean(names::class(&state.answer, class)));
+    let title = format!("{} against {}", name(class), name(other));
+    let (apart, stale) = match state.answered(&Question::Apart { class, other }) {
+        Answered::Found(Finding::Apart(apart), _, stale) => (apart, stale),
+        Answered::Nothing(reason) => {
+            heading(pane, 0, &title, Note::Settled);
+            pane.put(1, 1, &text::fit(reason, (pane.width() as usize).saturating_sub(2)), Role::Faint);
+            return;
+        }
+        _ => {
+            heading(pane, 0, &title, Note::Settled);
+            return nothing(state, pane, 1);
+        }
+    };
+    let (mine, others) = apart.models;
+    heading(pane, 0, &format!("{title}: {mine} and {others} models"), note(state, stale));
+    let mut rest = pane.area();
+    pane::cut_top(&mut rest, 1);
+    let room = (rest.width as usize).saturating_sub(2);
+    let words: Vec<String> = apart.strongest().iter().take(60).map(|(index, by)| said(*index, *by)).collect();
+    let lines = packed(&words, room);
+    let high = (lines.len() as u16).min((rest.height / 3).max(1));
+    let below = pane::cut_bottom(&mut rest, high + 1);
+    let mut below = pane.part(below);
+    let key = format!("λ with + greater, − smaller in {}; 1: in all pairs", names::class(&state.answer, class));
+    below.put(1, 0, &text::fit(&key, room), Role::Faint);
+    for (y, line) in (1..=high).zip(&lines) {
+        below.put(1, y, &text::fit(line, room), Role::Plain);
+    }
+    if rest.height >= 4 {
+        spikes(apart, state.logarithmic).draw(&mut pane.part(pane::inset(rest, 1)));
+    }
+    if stale {
+        pane.fade();
+    }
+}
+
+fn said(index: u32, by: f64) -> String {
+    let sign = if by < 0.0 { '−' } else { '+' };
+    format!("λ{index} {sign}{:.2}", by.abs())
+}
+
+fn spikes(apart: &Apart, logarithmic: bool) -> Plot {
+    let best = apart.separation.iter().fold(0.0_f64, |best, by| best.max(by.abs()));
+    let strong = |by: f64| best > 0.0 && by.abs() >= STRONG * best;
+    let spike = |(index, &by): (u32, &f64)| Series {
+        points: vec![(f64::from(index), 0.0), (f64::from(index), by)],
+        role: if strong(by) { Role::Query } else { Role::Train },
+        stroke: Stroke::Solid,
+        plain: if strong(by) { '#' } else { ':' },
+    };
+    let mut series: Vec<Series> = (1..).zip(&apart.separation).map(spike).collect();
+    // Several eigenvalues share a column: the strongest must stay to be seen.
+    series.sort_by(|a, b| a.points[1].1.abs().total_cmp(&b.points[1].1.abs()));
+    let x = Axis::indices(apart.separation.len(), logarithmic);
+    Plot { x, y: Axis::linear(-1.0, 1.0), series, marks: Vec::new(), guide: None }
+}
