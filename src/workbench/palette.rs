@@ -183,7 +183,7 @@ mod tests {
     fn every_command_of_the_keymap_can_be_picked() {
         let picks = picks(&state(""));
         for binding in keymap::bindings() {
-            if matches!(binding.context, Context::Entry | Context::Help | Context::Palette) {
+            if matches!(binding.context, Context::Entry | Context::Help | Context::Palette | Context::Journal) {
                 continue;
             }
             for (_, action) in &binding.keys {

@@ -18,6 +18,7 @@ fn moods() -> Vec<State> {
     moods.push(State { help: Some(0), ..state(View::Overview) });
     moods.push(State { entry: Some(Entry::default()), ..state(View::Overview) });
     moods.push(State { palette: Some(Palette::default()), ..state(View::Overview) });
+    moods.push(State { told: Some(0), ..state(View::Overview) });
     moods
 }
 
