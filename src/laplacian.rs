@@ -27,7 +27,7 @@
 
 pub(crate) use self::matrix::MassMatrix;
 pub use self::{
-    assemble::{LaplacianError, assemble},
+    assemble::{LaplacianError, assemble, assemble_watched},
     choice::{Boundary, Choice, Mass, Operator, Triangulation},
     matrix::Symmetric,
     surface::Extent,

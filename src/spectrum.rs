@@ -10,13 +10,15 @@
 //! Every eigenvalue comes with a [bound](Spectrum::residuals) on its error; what it rests on is told in [`mod@slice`].
 //! [`eigenvectors()`] of chosen eigenvalues and the eigenvalues [`near()`] a target are computed on demand.
 //!
-//! A mesh of several pieces is solved piece by piece. Everything runs on the calling thread.
+//! A mesh of several pieces is solved piece by piece. Everything runs on the calling thread, unless a [`Crew`] helps:
+//! then the processes of several shifts run at once, and the result is still the same bits.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use self::{
     band::Band,
+    crew::Crew,
     normalise::Normalisation,
     timings::{Cost, Timings},
     vectors::Eigenvector,
@@ -24,15 +26,16 @@ pub use self::{
 };
 pub use crate::laplacian::Choice;
 use crate::{
-    laplacian::{Laplacian, LaplacianError, assemble},
+    laplacian::{Laplacian, LaplacianError, assemble_watched},
     mesh::Mesh,
-    watch::Watch,
+    watch::{Stopped, Watch},
 };
 
 use self::timings::Meter;
 
 mod band;
 mod block;
+mod crew;
 mod dense;
 mod factor;
 #[cfg(test)]
@@ -49,6 +52,7 @@ mod shapes;
 mod slice;
 mod small;
 mod solve;
+mod team;
 #[cfg(test)]
 mod tests;
 mod thorough;
@@ -57,7 +61,7 @@ mod vectors;
 mod window;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
-pub const KERNEL: u32 = 3;
+pub const KERNEL: u32 = 4;
 
 /// Why there is no spectrum.
 #[derive(Debug, Error)]
@@ -84,7 +88,28 @@ pub enum SpectrumError {
 
 impl From<LaplacianError> for SpectrumError {
     fn from(error: LaplacianError) -> Self {
-        Self::Refused(error.to_string())
+        match error {
+            LaplacianError::Cancelled(_) => Self::Cancelled { finished: Vec::new() },
+            error => Self::Refused(error.to_string()),
+        }
+    }
+}
+
+impl From<Stopped> for SpectrumError {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled { finished: Vec::new() }
+    }
+}
+
+impl SpectrumError {
+    /// The same; when it is a cancellation that came before any band, with these as the finished ones.
+    fn keeping(self, known: &[Band]) -> Self {
+        match self {
+            Self::Cancelled { finished } if finished.len() < known.len() => {
+                Self::Cancelled { finished: known.to_vec() }
+            }
+            other => other,
+        }
     }
 }
 
@@ -191,10 +216,56 @@ pub fn solve(
     known: &[Band],
     watch: &dyn Watch,
 ) -> Result<Spectrum, SpectrumError> {
+    solve_with(mesh, choice, &Request { known, ..Request::new(count) }, watch)
+}
+
+/// What is asked of [`solve_with()`].
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// So many eigenvalues.
+    pub count: usize,
+    /// Bands that are there already.
+    pub known: &'a [Band],
+    /// Other threads may help, and scratch memory is kept for the next mesh.
+    pub crew: Option<&'a Crew>,
+    /// Called on the calling thread with all bands that are finished, known ones included, when there is a new one.
+    pub keep: &'a dyn Fn(&[Band]),
+}
+
+impl Request<'_> {
+    /// So many eigenvalues, on the calling thread alone.
+    #[must_use]
+    pub fn new(count: usize) -> Self {
+        Self { count, known: &[], crew: None, keep: &|_| {} }
+    }
+}
+
+impl std::fmt::Debug for Request<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Request").field("count", &self.count).field("known", &self.known.len()).finish_non_exhaustive()
+    }
+}
+
+/// [`solve()`], with other threads if there are any that help. The result is the same bits, whoever helps.
+///
+/// # Errors
+/// As [`solve()`].
+pub fn solve_with(
+    mesh: &Mesh,
+    choice: Choice,
+    request: &Request,
+    watch: &dyn Watch,
+) -> Result<Spectrum, SpectrumError> {
     let mut meter = Meter::start();
-    let laplacian = assemble(mesh, choice)?;
+    let laplacian =
+        assemble_watched(mesh, choice, watch).map_err(|error| SpectrumError::from(error).keeping(request.known))?;
     meter.charge(Cost::Assembly);
-    let mut spectrum = solve_laplacian(&laplacian, count, known, watch)?;
+    let mut tools = request.crew.map(Crew::take).unwrap_or_default();
+    let solved = solve::solve(&laplacian, request, watch, &mut tools);
+    if let Some(crew) = request.crew {
+        crew.give_back(tools);
+    }
+    let mut spectrum = solved?;
     spectrum.timings.add(&meter.timings);
     Ok(spectrum)
 }
@@ -209,7 +280,8 @@ pub fn solve_laplacian(
     known: &[Band],
     watch: &dyn Watch,
 ) -> Result<Spectrum, SpectrumError> {
-    solve::solve(laplacian, count, known, watch, &mut part::Tools::default())
+    let request = Request { known, ..Request::new(count) };
+    solve::solve(laplacian, &request, watch, &mut part::Tools::default())
 }
 
 /// The eigenvectors of chosen eigenvalues of a mesh whose `spectrum` is known, one for each index in `wanted`.
@@ -227,7 +299,7 @@ pub fn eigenvectors(
     wanted: &[usize],
     watch: &dyn Watch,
 ) -> Result<Vec<Eigenvector>, SpectrumError> {
-    let laplacian = assemble(mesh, choice)?;
+    let laplacian = assemble_watched(mesh, choice, watch)?;
     let mut vectors = eigenvectors_laplacian(&laplacian, spectrum, wanted, watch)?;
     for vector in &mut vectors {
         let mut values = vec![0.0; mesh.vertices().len()];
@@ -269,7 +341,7 @@ pub fn near(
     if !(target.is_finite() && target >= 0.0) {
         return Err(SpectrumError::Refused(format!("eigenvalues are sought near λ = {target}, not at 0 or above")));
     }
-    window::near(&assemble(mesh, choice)?, target, count, watch)
+    window::near(&assemble_watched(mesh, choice, watch)?, target, count, watch)
 }
 
 /// All eigenvalues of a mesh in a range, ends included, certified complete.
@@ -286,5 +358,5 @@ pub fn between(
     if !(start.is_finite() && end.is_finite() && start <= end) {
         return Err(SpectrumError::Refused(format!("there is nothing between λ = {start} and λ = {end}")));
     }
-    window::between(&assemble(mesh, choice)?, start.max(0.0)..end, watch)
+    window::between(&assemble_watched(mesh, choice, watch)?, start.max(0.0)..end, watch)
 }

@@ -31,3 +31,71 @@ impl Watch for Silent<'_> {
         self.0.cancelled()
     }
 }
+
+/// The watch said so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Stopped;
+
+/// Asks a watch once per so much work: about every two milliseconds.
+pub struct Pulse<'a> {
+    watch: &'a dyn Watch,
+    spent: std::cell::Cell<usize>,
+}
+
+impl<'a> Pulse<'a> {
+    /// In nanoseconds, about.
+    const BUDGET: usize = 2_000_000;
+
+    /// A pulse of this watch.
+    #[must_use]
+    pub fn new(watch: &'a dyn Watch) -> Self {
+        Self { watch, spent: std::cell::Cell::new(0) }
+    }
+
+    /// Notes work that was done or is about to be done, in nanoseconds, about.
+    ///
+    /// # Errors
+    /// When the watch has cancelled.
+    #[inline]
+    pub fn beat(&self, nanoseconds: usize) -> Result<(), Stopped> {
+        let spent = self.spent.get() + nanoseconds;
+        self.spent.set(spent);
+        if spent < Self::BUDGET { Ok(()) } else { self.ask() }
+    }
+
+    /// Asks now.
+    ///
+    /// # Errors
+    /// When the watch has cancelled.
+    #[cold]
+    pub fn ask(&self) -> Result<(), Stopped> {
+        self.spent.set(0);
+        if self.watch.cancelled() { Err(Stopped) } else { Ok(()) }
+    }
+
+    /// Sorts items of which no two are equal, or equal ones are the same.
+    ///
+    /// # Errors
+    /// When the watch has cancelled; the items are then in some order.
+    pub fn sort<T>(&self, items: &mut [T], compare: &impl Fn(&T, &T) -> std::cmp::Ordering) -> Result<(), Stopped> {
+        /// What is sorted between two looks at the watch: less than a millisecond of work.
+        const RUN: usize = 1 << 14;
+        if items.len() <= RUN {
+            items.sort_unstable_by(compare);
+            return self.beat(60 * items.len());
+        }
+        let middle = items.len() / 2;
+        items.select_nth_unstable_by(middle, compare);
+        self.beat(10 * items.len())?;
+        let (lower, upper) = items.split_at_mut(middle);
+        self.sort(lower, compare)?;
+        self.sort(&mut upper[1..], compare)
+    }
+}
+
+impl std::fmt::Debug for Pulse<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Pulse").field("spent", &self.spent).finish_non_exhaustive()
+    }
+}

@@ -3,10 +3,12 @@
 use std::{
     collections::HashSet,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
 };
-
-use rayon::prelude::*;
 
 use super::{
     args::{SpectrumArguments, SpectrumFormat},
@@ -42,7 +44,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
         (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], arguments.cache.as_deref())));
     let singles = Singles::new(store.clone());
     let problem = arguments.problem();
-    let solved = solve(&singles, arguments, problem, interrupt)?;
+    let solved = solve(&singles, arguments, problem, interrupt);
 
     let mut spectra = Spectra::new();
     for (path, solved) in arguments.meshes.iter().zip(solved) {
@@ -76,36 +78,67 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     Ok(if spectra.failed.is_empty() { Exit::Done } else { Exit::Failed })
 }
 
-/// Solves the meshes on a pool of threads; the results are in the order of the command line.
+/// Solves the meshes on several threads; the results are in the order of the command line. Threads for which no mesh is
+/// left help with the others.
 fn solve(
     singles: &Singles,
     arguments: &SpectrumArguments,
     problem: Problem,
     interrupt: Interrupt,
-) -> Result<Vec<Result<Single, SingleError>>, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(study::threads(arguments.threads))
-        .build()
-        .map_err(|error| Failure::caused("threads cannot be started", error))?;
-    let count = arguments.count;
+) -> Vec<Result<Single, SingleError>> {
+    let (threads, count) = (study::threads(arguments.threads), arguments.count);
     if let [mesh] = &arguments.meshes[..] {
         let watch = Progress::new("eigenvalues", "eigenvalues", interrupt);
-        return Ok(vec![pool.install(|| singles.solve(mesh, problem, count, &watch))]);
+        return vec![singles.crew().with(threads, || singles.solve(mesh, problem, count, &watch))];
     }
     let watch = Progress::new("meshes", "meshes", interrupt);
-    let (done, total) = (AtomicUsize::new(0), arguments.meshes.len());
-    watch.progress(0, total);
-    Ok(pool.install(|| {
-        let solve = |mesh: &PathBuf| {
-            if watch.cancelled() {
-                return Err(SingleError::Cancelled);
-            }
-            let solved = singles.solve(mesh, problem, count, &Silent(&watch));
-            watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-            solved
-        };
-        arguments.meshes.par_iter().map(solve).collect()
-    }))
+    let meshes = &arguments.meshes;
+    let all = Tally { next: AtomicUsize::new(0), done: AtomicUsize::new(0), total: meshes.len() };
+    watch.progress(0, all.total);
+    let found = Mutex::new(Vec::with_capacity(meshes.len()));
+    let work = || {
+        while let Some((at, mesh)) = all.begin().and_then(|at| meshes.get(at).map(|mesh| (at, mesh))) {
+            let solved = if watch.cancelled() {
+                Err(SingleError::Cancelled)
+            } else {
+                singles.solve(mesh, problem, count, &Silent(&watch))
+            };
+            found.lock().unwrap_or_else(PoisonError::into_inner).push((at, solved));
+            watch.progress(all.done.fetch_add(1, Ordering::Relaxed) + 1, all.total);
+        }
+        singles.crew().help(&all);
+    };
+    thread::scope(|scope| {
+        for _ in 1..threads {
+            // With fewer threads than were asked for it takes longer.
+            let _ = thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
+    });
+    let mut found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    found.sort_by_key(|(at, _)| *at);
+    found.into_iter().map(|(_, solved)| solved).collect()
+}
+
+/// How many meshes were begun and are done.
+struct Tally {
+    next: AtomicUsize,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl Tally {
+    /// The next one, if there is one.
+    fn begin(&self) -> Option<usize> {
+        let at = self.next.fetch_add(1, Ordering::Relaxed);
+        (at < self.total).then_some(at)
+    }
+}
+
+impl Watch for Tally {
+    fn cancelled(&self) -> bool {
+        self.done.load(Ordering::Relaxed) >= self.total
+    }
 }
 
 /// The cache: the one that is named; else that of the data set the mesh belongs to, which is one to three folders up;

@@ -11,11 +11,17 @@ use super::{
     restrict::{on_boundary, restrict},
     surface::{Extent, Surface, first_at_position},
 };
-use crate::mesh::Mesh;
+use crate::{
+    mesh::Mesh,
+    watch::{Pulse, Stopped, Unwatched, Watch},
+};
 
 /// Why a mesh has no Laplacian.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum LaplacianError {
+    /// The watch said so.
+    #[error(transparent)]
+    Cancelled(#[from] Stopped),
     /// There is nothing to integrate over.
     #[error("the mesh has no triangle with three distinct vertices")]
     Empty,
@@ -76,29 +82,42 @@ pub enum LaplacianError {
 /// square is not a number; when a Dirichlet condition leaves no vertex; when points without faces are to be taken as
 /// a mesh, or make no triangle.
 pub fn assemble(mesh: &Mesh, choice: Choice) -> Result<Laplacian, LaplacianError> {
+    assemble_watched(mesh, choice, &Unwatched)
+}
+
+/// [`assemble()`] that ends soon after the watch cancels.
+///
+/// # Errors
+/// As [`assemble()`], and when the watch cancels.
+pub fn assemble_watched(mesh: &Mesh, choice: Choice, watch: &dyn Watch) -> Result<Laplacian, LaplacianError> {
+    let pulse = &Pulse::new(watch);
     if mesh.triangles().is_empty() && !mesh.vertices().is_empty() {
-        return of_points(mesh, choice);
+        return of_points(mesh, choice, pulse);
     }
-    let soup = choice.triangulation == Triangulation::Auto && is_soup(mesh);
-    let mut surface = Surface::of(mesh, soup || choice.triangulation == Triangulation::Tufted)?;
+    let soup = choice.triangulation == Triangulation::Auto && is_soup(mesh, pulse)?;
+    let mut surface = Surface::of(mesh, soup || choice.triangulation == Triangulation::Tufted, pulse)?;
     if soup {
         surface.notes.insert(0, "a soup of faces that share no vertices".to_owned());
     }
     let joins = match choice.triangulation {
-        Triangulation::Auto | Triangulation::Given => as_given(&mut surface),
-        Triangulation::Delaunay => intrinsic(&mut surface, Rims::Open, 1.0),
-        Triangulation::Tufted => intrinsic(&mut surface, Rims::Tufted, 1.0),
+        Triangulation::Auto | Triangulation::Given => as_given(&mut surface, pulse)?,
+        Triangulation::Delaunay => intrinsic(&mut surface, Rims::Open, 1.0, pulse)?,
+        Triangulation::Tufted => intrinsic(&mut surface, Rims::Tufted, 1.0, pulse)?,
     };
-    let held = (choice.boundary == Boundary::Dirichlet).then(|| on_boundary(surface.points.len(), &surface.triangles));
-    let whole = finish(surface, joins, choice);
+    let held = match choice.boundary {
+        Boundary::Dirichlet => Some(on_boundary(surface.points.len(), &surface.triangles, pulse)?),
+        Boundary::Neumann => None,
+    };
+    let whole = finish(surface, joins, choice, pulse)?;
+    pulse.ask()?;
     match held {
-        Some(held) => restrict(whole, &held),
+        Some(held) => restrict(whole, &held, pulse),
         None => Ok(whole),
     }
 }
 
 /// The same for points without faces.
-fn of_points(mesh: &Mesh, choice: Choice) -> Result<Laplacian, LaplacianError> {
+fn of_points(mesh: &Mesh, choice: Choice, pulse: &Pulse) -> Result<Laplacian, LaplacianError> {
     let vertices = mesh.vertices().len();
     if matches!(choice.triangulation, Triangulation::Given | Triangulation::Delaunay) {
         return Err(LaplacianError::NoFaces { vertices });
@@ -106,7 +125,7 @@ fn of_points(mesh: &Mesh, choice: Choice) -> Result<Laplacian, LaplacianError> {
     if choice.boundary == Boundary::Dirichlet {
         return Err(LaplacianError::CloudBoundary);
     }
-    let mut surface = cloud::surface(mesh)?;
+    let mut surface = cloud::surface(mesh, pulse)?;
     surface.notes.insert(
         0,
         format!(
@@ -116,28 +135,30 @@ fn of_points(mesh: &Mesh, choice: Choice) -> Result<Laplacian, LaplacianError> {
         ),
     );
     // A triangle is there once for each of its corners, where these agree on it.
-    let joins = intrinsic(&mut surface, Rims::Tufted, 3.0);
-    Ok(finish(surface, joins, choice))
+    let joins = intrinsic(&mut surface, Rims::Tufted, 3.0, pulse)?;
+    Ok(finish(surface, joins, choice, pulse)?)
 }
 
 /// Whether faces hang together by the positions of their vertices, not by their numbers: so many vertices that most
 /// faces share none, most of them at the position of an earlier one.
-fn is_soup(mesh: &Mesh) -> bool {
+fn is_soup(mesh: &Mesh, pulse: &Pulse) -> Result<bool, Stopped> {
     let vertices = mesh.vertices().len();
-    vertices >= 2 * mesh.triangles().len() && {
-        let later = first_at_position(mesh).1;
-        later > vertices / 2 && vertices - later > 2
+    if vertices < 2 * mesh.triangles().len() {
+        return Ok(false);
     }
+    let later = first_at_position(mesh, pulse)?.1;
+    Ok(later > vertices / 2 && vertices - later > 2)
 }
 
 /// The faces as they are; flat ones get a metric of their own.
-fn as_given(surface: &mut Surface) -> Joins {
+fn as_given(surface: &mut Surface, pulse: &Pulse) -> Result<Joins, Stopped> {
     let (mean, longest) = surface.edge_lengths();
     let floor = if mean > 0.0 { 1e-3 * mean } else { longest };
     let mut flat = 0_usize;
     let mut joins = Joins::new(surface.points.len(), surface.triangles.len());
     for corners in &surface.triangles {
         let found = element(corners.map(|corner| surface.points[corner as usize]), floor);
+        pulse.beat(40)?;
         flat += usize::from(found.mollified);
         joins.add(*corners, found.cotangents.map(|cotangent| 0.5 * cotangent), found.area);
     }
@@ -145,15 +166,15 @@ fn as_given(surface: &mut Surface) -> Joins {
         let faces = surface.triangles.len();
         surface.notes.push(format!("{flat} of {faces} faces have no area: their edge lengths were mollified"));
     }
-    joins
+    Ok(joins)
 }
 
 /// The triangles after edges were flipped to Delaunay; each counts one `layers`-th.
-fn intrinsic(surface: &mut Surface, rims: Rims, layers: f64) -> Joins {
-    let cover = cover(surface, rims);
+fn intrinsic(surface: &mut Surface, rims: Rims, layers: f64, pulse: &Pulse) -> Result<Joins, Stopped> {
+    let cover = cover(surface, rims, pulse)?;
     let mut glued = cover.glued;
     let opened = glued.mollify();
-    let flips = glued.flip_to_delaunay();
+    let flips = glued.flip_to_delaunay(pulse)?;
     let notes = &mut surface.notes;
     notes.push(match rims {
         Rims::Open => {
@@ -172,17 +193,20 @@ fn intrinsic(surface: &mut Surface, rims: Rims, layers: f64) -> Joins {
     let mut joins = Joins::new(surface.points.len(), glued.corners.len());
     for (corners, found) in glued.elements() {
         joins.add(corners, found.cotangents.map(|cotangent| 0.5 * share * cotangent), share * found.area);
+        pulse.beat(40)?;
     }
-    joins
+    Ok(joins)
 }
 
-fn finish(surface: Surface, joins: Joins, choice: Choice) -> Laplacian {
+fn finish(surface: Surface, joins: Joins, choice: Choice, pulse: &Pulse) -> Result<Laplacian, Stopped> {
+    let surface_size = surface.triangles.len();
     let (component, components) = surface.components();
     let Surface { vertices, exponent, mut notes, .. } = surface;
     if components > 1 {
         notes.push(format!("{components} connected components: as many zeros"));
     }
-    let matrix = joins.finish(choice);
+    pulse.beat(20 * surface_size)?;
+    let matrix = joins.finish(choice, pulse)?;
     let total = matrix.total_mass();
-    Laplacian { matrix, vertices, component, components, total, exponent, notes }
+    Ok(Laplacian { matrix, vertices, component, components, total, exponent, notes })
 }

@@ -12,7 +12,10 @@ use super::{
     LaplacianError,
     surface::{Surface, first_at_position, scaled},
 };
-use crate::mesh::Mesh;
+use crate::{
+    mesh::Mesh,
+    watch::{Pulse, Stopped},
+};
 
 /// How many neighbours a local triangulation is made of, as in the reference implementation of the paper.
 pub(super) const NEIGHBOURS: usize = 30;
@@ -24,13 +27,13 @@ pub(super) const NEIGHBOURS: usize = 30;
 const NUDGE: f64 = 0.05;
 
 /// The triangles around every point; a triangle may be there up to three times.
-pub(super) fn surface(mesh: &Mesh) -> Result<Surface, LaplacianError> {
+pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianError> {
     let mut notes = Vec::new();
     let count = mesh.vertices().len();
     if count > (u32::MAX / 256) as usize {
         return Err(LaplacianError::TooLarge { triangles: 6 * count });
     }
-    let (first, later) = first_at_position(mesh);
+    let (first, later) = first_at_position(mesh, pulse)?;
     if later > 0 {
         notes.push(format!("{later} vertices are at the position of another one: left out"));
     }
@@ -40,7 +43,7 @@ pub(super) fn surface(mesh: &Mesh) -> Result<Surface, LaplacianError> {
         return Err(LaplacianError::NoCloud { vertices: count });
     }
     let (points, exponent) = scaled(mesh, &vertices)?;
-    let triangles = triangles(&points);
+    let triangles = triangles(&points, pulse)?;
     if triangles.is_empty() {
         return Err(LaplacianError::NoCloud { vertices: count });
     }
@@ -62,16 +65,16 @@ pub(super) fn surface(mesh: &Mesh) -> Result<Surface, LaplacianError> {
     })
 }
 
-fn triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
-    let tree = Tree::new(points);
+fn triangles(points: &[[f64; 3]], pulse: &Pulse) -> Result<Vec<[u32; 3]>, Stopped> {
+    let tree = Tree::new(points, pulse)?;
     let mut found = Vec::new();
-    let nudged: Vec<[f64; 3]> = (0..points.len() as u32)
-        .map(|at| {
-            tree.nearest(points[at as usize], 2, &mut found);
-            let reach = found.iter().find(|near| near.1 != at).map_or(0.0, |near| near.0.sqrt());
-            nudged(points[at as usize], NUDGE * reach)
-        })
-        .collect();
+    let mut nudged: Vec<[f64; 3]> = Vec::with_capacity(points.len());
+    for at in 0..points.len() as u32 {
+        tree.nearest(points[at as usize], 2, &mut found);
+        let reach = found.iter().find(|near| near.1 != at).map_or(0.0, |near| near.0.sqrt());
+        nudged.push(nudge(points[at as usize], NUDGE * reach));
+        pulse.beat(400)?;
+    }
     let mut triangles = Vec::with_capacity(6 * points.len());
     let mut ring = Vec::new();
     for at in 0..points.len() as u32 {
@@ -84,12 +87,13 @@ fn triangles(points: &[[f64; 3]]) -> Vec<[u32; 3]> {
         let others = found.iter().map(|near| near.1).filter(|&other| other != at);
         ring.extend(others.map(|other| (other, arm(points, other), arm(&nudged, other))));
         star::star(&ring, |b, c| triangles.push([at, b, c]));
+        pulse.beat(8000)?;
     }
-    triangles
+    Ok(triangles)
 }
 
 /// The point moved by less than `by` along each axis, in a way that depends on nothing but the point.
-fn nudged(point: [f64; 3], by: f64) -> [f64; 3] {
+fn nudge(point: [f64; 3], by: f64) -> [f64; 3] {
     let mut state = point.iter().fold(0_u64, |state, x| (state ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15));
     point.map(|x| {
         // SplitMix64.

@@ -4,6 +4,7 @@ use super::{
     glued::{Glued, NONE},
     surface::Surface,
 };
+use crate::watch::{Pulse, Stopped};
 
 /// What is done with the edges that are not between exactly two faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,9 +29,12 @@ type Side = (u32, u32, u32);
 
 /// Glues the triangles of a surface. Each is there twice, in both orientations, so that neither the given orientations
 /// nor the surface's own sides matter; an oriented surface with open rims needs one sheet only.
-pub(super) fn cover(surface: &Surface, rims: Rims) -> Cover {
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn cover(surface: &Surface, rims: Rims, pulse: &Pulse) -> Result<Cover, Stopped> {
     let triangles = &surface.triangles;
-    let sides = sides(triangles);
+    let sides = sides(triangles, pulse)?;
     let ascending = |side: u32| {
         let (triangle, at) = (triangles[(side / 3) as usize], (side % 3) as usize);
         triangle[(at + 1) % 3] < triangle[(at + 2) % 3]
@@ -43,7 +47,7 @@ pub(super) fn cover(surface: &Surface, rims: Rims) -> Cover {
             twins[group[0].2 as usize] = group[1].2;
             twins[group[1].2 as usize] = group[0].2;
         }
-        return Cover { glued: glued(surface, 1, twins), sheets: 1 };
+        return Ok(Cover { glued: glued(surface, 1, twins, pulse)?, sheets: 1 });
     }
     let mut twins = vec![NONE; 6 * triangles.len()];
     // The side on the sheet that runs from the smaller to the greater vertex there, and the one on the other sheet.
@@ -60,13 +64,14 @@ pub(super) fn cover(surface: &Surface, rims: Rims) -> Cover {
         if group.len() > 2 {
             by_angle(surface, (group[0].0, group[0].1), &mut order);
         }
+        pulse.beat(60 * group.len())?;
         match_around(&order, |side| apex(triangles, side), &mut pairs);
         for (side, next) in pairs.drain(..) {
             twins[front(side) as usize] = back(next);
             twins[back(next) as usize] = front(side);
         }
     }
-    Cover { glued: glued(surface, 2, twins), sheets: 2 }
+    Ok(Cover { glued: glued(surface, 2, twins, pulse)?, sheets: 2 })
 }
 
 /// A side of a triangle on its first sheet, or on its second one, where the triangle runs the other way round.
@@ -75,17 +80,17 @@ const fn on_sheet(side: u32, second: bool) -> u32 {
 }
 
 /// All sides by edge and triangle.
-fn sides(triangles: &[[u32; 3]]) -> Vec<Side> {
+fn sides(triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<Side>, Stopped> {
     let mut sides: Vec<Side> = (0..)
         .zip(triangles)
         .flat_map(|(at, &[a, b, c])| [(b, c, 3 * at), (c, a, 3 * at + 1), (a, b, 3 * at + 2)])
         .map(|(a, b, side)| (a.min(b), a.max(b), side))
         .collect();
-    sides.sort_unstable();
-    sides
+    pulse.sort(&mut sides, &Ord::cmp)?;
+    Ok(sides)
 }
 
-fn glued(surface: &Surface, sheets: usize, twins: Vec<u32>) -> Glued {
+fn glued(surface: &Surface, sheets: usize, twins: Vec<u32>, pulse: &Pulse) -> Result<Glued, Stopped> {
     let mut corners = Vec::with_capacity(sheets * surface.triangles.len());
     let mut lengths = Vec::with_capacity(corners.capacity());
     for &[a, b, c] in &surface.triangles {
@@ -96,8 +101,9 @@ fn glued(surface: &Surface, sheets: usize, twins: Vec<u32>) -> Glued {
             corners.push([a, c, b]);
             lengths.push([bc, ab, ca]);
         }
+        pulse.beat(40)?;
     }
-    Glued { corners, lengths, twins }
+    Ok(Glued { corners, lengths, twins })
 }
 
 /// The vertex opposite of a side.

@@ -4,6 +4,7 @@
 //! edge; neither is a special case.
 
 use super::element::{Element, of_lengths};
+use crate::watch::{Pulse, Stopped};
 
 /// No side: a boundary.
 pub(super) const NONE: u32 = u32::MAX;
@@ -63,20 +64,24 @@ impl Glued {
     /// and a flip is made only if it lowers the sum of the two numbers at hand; the lengths take finitely many values,
     /// so no state comes twice. How long it takes is bounded by a count of flips; what is left then is a triangulation
     /// of the same surface.
-    pub(super) fn flip_to_delaunay(&mut self) -> Flips {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn flip_to_delaunay(&mut self, pulse: &Pulse) -> Result<Flips, Stopped> {
         let mut queue: Vec<u32> = (0..self.twins.len() as u32).rev().collect();
         let mut queued = vec![true; self.twins.len()];
         let most = MOST_FLIPS * self.corners.len() + 1000;
         let mut count = 0;
         while let Some(side) = queue.pop() {
             queued[side as usize] = false;
+            pulse.beat(50)?;
             let twin = self.twins[side as usize];
             if twin == NONE || twin / 3 == side / 3 || !self.improve(side, twin) {
                 continue;
             }
             count += 1;
             if count >= most {
-                return Flips { count, complete: false };
+                return Ok(Flips { count, complete: false });
             }
             for triangle in [side / 3, twin / 3] {
                 for side in 3 * triangle..3 * triangle + 3 {
@@ -87,7 +92,7 @@ impl Glued {
                 }
             }
         }
-        Flips { count, complete: true }
+        Ok(Flips { count, complete: true })
     }
 
     /// Flips the edge of two glued sides if it is not Delaunay and the flip lowers the harmonic index.
@@ -169,6 +174,7 @@ mod tests {
         *,
     };
     use crate::mesh::Mesh;
+    use crate::watch::Unwatched;
 
     /// A strip of points by rows, each cell cut along one of its diagonals.
     fn sheet(points: &[[f64; 3]], width: usize, cuts: u64) -> Mesh {
@@ -188,7 +194,12 @@ mod tests {
     }
 
     fn glue(mesh: &Mesh, rims: Rims) -> Option<Glued> {
-        Surface::of(mesh, false).ok().map(|surface| cover(&surface, rims).glued)
+        let pulse = Pulse::new(&Unwatched);
+        Surface::of(mesh, false, &pulse).ok().map(|surface| cover(&surface, rims, &pulse).unwrap().glued)
+    }
+
+    fn flip(glued: &mut Glued) -> Flips {
+        glued.flip_to_delaunay(&Pulse::new(&Unwatched)).unwrap()
     }
 
     /// Every side is glued to one that is glued to it, has its length and runs the other way.
@@ -235,7 +246,7 @@ mod tests {
         let mut glued = glue(&mesh, Rims::Open).unwrap();
         assert_eq!(glued.mollify(), 0.0);
         let before = area(&glued);
-        assert_eq!(glued.flip_to_delaunay(), Flips { count: 1, complete: true });
+        assert_eq!(flip(&mut glued), Flips { count: 1, complete: true });
         assert_glued(&glued);
         // Coordinates are over two.
         let diagonal = glued.lengths.iter().flatten().fold(1.0_f64, |least, &length| least.min(length));
@@ -255,7 +266,7 @@ mod tests {
         assert_glued(&glued);
         assert!(glued.twins.iter().all(|&twin| twin != NONE));
         // The angle at 2 is obtuse, and the two of them at the edge 0–1 are beyond π: that edge becomes a loop at 2.
-        glued.flip_to_delaunay();
+        flip(&mut glued);
         assert_glued(&glued);
         assert!(glued.corners.iter().all(|corners| corners.iter().filter(|&&corner| corner == 2).count() == 2));
         assert_eq!(not_delaunay(&glued, 1e-9), 0);
@@ -289,7 +300,7 @@ mod tests {
             glued.mollify();
             let before = area(&glued);
             prop_assert!(glued.elements().all(|(_, element)| element.area > 0.0));
-            let flips = glued.flip_to_delaunay();
+            let flips = flip(&mut glued);
             prop_assert!(flips.complete);
             assert_glued(&glued);
             prop_assert!((area(&glued) - before).abs() < 1e-6 * before, "{} {}", area(&glued), before);

@@ -1,6 +1,7 @@
 //! The sum over the triangles.
 
 use super::{Choice, Mass, Operator, matrix::MassMatrix, matrix::Symmetric};
+use crate::watch::{Pulse, Stopped};
 
 /// Collects the contributions of the triangles to the edges, in the order of the triangles.
 pub(super) struct Joins {
@@ -33,7 +34,10 @@ impl Joins {
     }
 
     /// L and B.
-    pub(super) fn finish(self, choice: Choice) -> Symmetric {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn finish(self, choice: Choice, pulse: &Pulse) -> Result<Symmetric, Stopped> {
         let n = self.area.len();
         let mut start = vec![0_usize; n + 1];
         for edge in &self.edges {
@@ -42,11 +46,13 @@ impl Joins {
         for at in 0..n {
             start[at + 1] += start[at];
         }
+        pulse.beat(2 * self.edges.len())?;
         let mut next = start.clone();
         let mut sorted = vec![(0_u32, 0.0, 0.0); self.edges.len()];
         for &(low, high, weight, area) in &self.edges {
             sorted[next[low as usize]] = (high, weight, area);
             next[low as usize] += 1;
+            pulse.beat(8)?;
         }
         let mut columns = Vec::with_capacity(n + 1);
         columns.push(0);
@@ -56,6 +62,7 @@ impl Joins {
         let mut diagonal = vec![0.0; n];
         for column in 0..n {
             let list = &mut sorted[start[column]..start[column + 1]];
+            pulse.beat(20 * list.len())?;
             list.sort_by_key(|entry| entry.0);
             rows.push(column as u32);
             stiffness.push(0.0);
@@ -88,6 +95,6 @@ impl Joins {
                 MassMatrix::Full(coupling)
             }
         };
-        Symmetric { columns, rows, stiffness, mass }
+        Ok(Symmetric { columns, rows, stiffness, mass })
     }
 }

@@ -1,5 +1,7 @@
 //! Two symmetric matrices on one sparsity pattern.
 
+use crate::watch::{Pulse, Stopped};
+
 /// L and B: the lower triangles of two symmetric n × n matrices on one pattern, by columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetric {
@@ -72,7 +74,10 @@ impl Symmetric {
 
     /// The principal submatrices on `keep` (distinct indices), in that order. The kept rows must not be coupled to
     /// others, or their entries are lost.
-    pub(crate) fn select(&self, keep: &[u32]) -> Self {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(crate) fn select(&self, keep: &[u32], pulse: &Pulse) -> Result<Self, Stopped> {
         let mut new = vec![u32::MAX; self.order()];
         for (at, &row) in keep.iter().enumerate() {
             new[row as usize] = at as u32;
@@ -90,6 +95,7 @@ impl Symmetric {
                     count[low as usize + 1] += 1;
                 }
             }
+            pulse.beat(30)?;
         }
         for at in 0..keep.len() {
             count[at + 1] += count[at];
@@ -104,9 +110,11 @@ impl Symmetric {
                     count[low as usize] += 1;
                 }
             }
+            pulse.beat(60)?;
         }
         for column in 0..keep.len() {
             order[columns[column]..columns[column + 1]].sort_unstable();
+            pulse.beat(40)?;
         }
         let mass = match &self.mass {
             MassMatrix::Unit => MassMatrix::Unit,
@@ -115,20 +123,25 @@ impl Symmetric {
             }
             MassMatrix::Full(values) => MassMatrix::Full(order.iter().map(|&(_, at)| values[at]).collect()),
         };
-        Self {
+        pulse.beat(5 * order.len())?;
+        Ok(Self {
             columns,
             rows: order.iter().map(|&(row, _)| row).collect(),
             stiffness: order.iter().map(|&(_, at)| self.stiffness[at]).collect(),
             mass,
-        }
+        })
     }
 
     /// Neighbours of every row as (offsets, indices): the off-diagonal pattern of both triangles.
-    pub(crate) fn graph(&self) -> (Vec<usize>, Vec<u32>) {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(crate) fn graph(&self, pulse: &Pulse) -> Result<(Vec<usize>, Vec<u32>), Stopped> {
         let n = self.order();
         let mut offsets = vec![0_usize; n + 1];
         let pairs = |visit: &mut dyn FnMut(usize, usize)| {
             for column in 0..n {
+                pulse.beat(20)?;
                 for at in self.range(column) {
                     let row = self.rows[at] as usize;
                     if row != column {
@@ -136,11 +149,12 @@ impl Symmetric {
                     }
                 }
             }
+            Ok(())
         };
         pairs(&mut |row, column| {
             offsets[row + 1] += 1;
             offsets[column + 1] += 1;
-        });
+        })?;
         for at in 0..n {
             offsets[at + 1] += offsets[at];
         }
@@ -151,7 +165,7 @@ impl Symmetric {
             next[row] += 1;
             neighbours[next[column]] = row as u32;
             next[column] += 1;
-        });
-        (offsets, neighbours)
+        })?;
+        Ok((offsets, neighbours))
     }
 }

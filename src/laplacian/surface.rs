@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 
 use super::LaplacianError;
-use crate::mesh::Mesh;
+use crate::{
+    mesh::Mesh,
+    watch::{Pulse, Stopped},
+};
 
 /// A length inside of an error; equal when its bits are.
 #[derive(Debug, Clone, Copy)]
@@ -40,14 +43,15 @@ pub(super) struct Surface {
 
 impl Surface {
     /// The faces of a mesh; with `weld`, vertices at one position are one.
-    pub(super) fn of(mesh: &Mesh, weld: bool) -> Result<Self, LaplacianError> {
+    pub(super) fn of(mesh: &Mesh, weld: bool, pulse: &Pulse) -> Result<Self, LaplacianError> {
         let mut notes = Vec::new();
         let mut triangles = in_range(mesh)?;
         if weld {
-            join(mesh, &mut triangles, &mut notes);
+            join(mesh, &mut triangles, &mut notes, pulse)?;
         }
-        let triangles = distinct(proper(triangles, &mut notes)?, &mut notes);
+        let triangles = distinct(proper(triangles, &mut notes)?, &mut notes, pulse)?;
         let (vertices, triangles) = compact(mesh, triangles, weld, &mut notes);
+        pulse.beat(10 * triangles.len())?;
         let (points, exponent) = scaled(mesh, &vertices)?;
         Ok(Self { points, triangles, vertices, exponent, notes })
     }
@@ -93,31 +97,31 @@ fn in_range(mesh: &Mesh) -> Result<Vec<[u32; 3]>, LaplacianError> {
 }
 
 /// Numbers vertices at one position by the first of them.
-pub(super) fn first_at_position(mesh: &Mesh) -> (Vec<u32>, usize) {
+pub(super) fn first_at_position(mesh: &Mesh, pulse: &Pulse) -> Result<(Vec<u32>, usize), Stopped> {
     let mut seen = HashMap::with_capacity(mesh.vertices().len());
     let mut later = 0;
-    let first = (0..)
-        .zip(mesh.vertices())
-        .map(|(vertex, position)| {
-            // Adding 0 turns −0 into 0.
-            let key = position.map(|coordinate| (coordinate + 0.0).to_bits());
-            let first = *seen.entry(key).or_insert(vertex);
-            later += usize::from(first != vertex);
-            first
-        })
-        .collect();
-    (first, later)
+    let mut all = Vec::with_capacity(mesh.vertices().len());
+    for (vertex, position) in (0..).zip(mesh.vertices()) {
+        // Adding 0 turns −0 into 0.
+        let key = position.map(|coordinate| (coordinate + 0.0).to_bits());
+        let first = *seen.entry(key).or_insert(vertex);
+        later += usize::from(first != vertex);
+        all.push(first);
+        pulse.beat(100)?;
+    }
+    Ok((all, later))
 }
 
 /// Replaces each vertex by the first one at its position.
-fn join(mesh: &Mesh, triangles: &mut [[u32; 3]], notes: &mut Vec<String>) {
-    let (first, later) = first_at_position(mesh);
+fn join(mesh: &Mesh, triangles: &mut [[u32; 3]], notes: &mut Vec<String>, pulse: &Pulse) -> Result<(), Stopped> {
+    let (first, later) = first_at_position(mesh, pulse)?;
     if later > 0 {
         notes.push(format!("{later} vertices are at the position of another one: joined with it"));
     }
     for vertex in triangles.iter_mut().flatten() {
         *vertex = first[*vertex as usize];
     }
+    Ok(())
 }
 
 /// The triangles with three distinct vertices.
@@ -132,7 +136,7 @@ fn proper(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>) -> Result<Vec<[
 }
 
 /// The first triangle of each set of three vertices.
-fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>) -> Vec<[u32; 3]> {
+fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>, pulse: &Pulse) -> Result<Vec<[u32; 3]>, Stopped> {
     let mut order: Vec<([u32; 3], u32)> = (0..)
         .zip(&triangles)
         .map(|(at, &triangle)| {
@@ -141,7 +145,7 @@ fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>) -> Vec<[u32; 
             (sorted, at)
         })
         .collect();
-    order.sort_unstable();
+    pulse.sort(&mut order, &Ord::cmp)?;
     let mut again = vec![false; triangles.len()];
     for pair in order.windows(2) {
         again[pair[1].1 as usize] = pair[0].0 == pair[1].0;
@@ -155,7 +159,7 @@ fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>) -> Vec<[u32; 
             !again[at - 1]
         });
     }
-    triangles
+    Ok(triangles)
 }
 
 /// Drops the vertices that no triangle names; those that were joined are not told of again.

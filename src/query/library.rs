@@ -4,6 +4,7 @@
 //! fills the library, the tracked functions of the database read from it.
 
 use std::{
+    cell::Cell,
     collections::{HashMap, HashSet},
     path::{Path, PathBuf},
     sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError},
@@ -21,7 +22,7 @@ use super::{
 use crate::{
     mesh::{self, Format, GeometryHash, Mesh, Survey},
     remesh::RemeshError,
-    spectrum::{self, Band, Spectrum, SpectrumError},
+    spectrum::{self, Band, Crew, Request, Spectrum, SpectrumError},
     store::{Key, Store},
     watch::{Unwatched, Watch},
 };
@@ -69,6 +70,9 @@ pub(crate) enum Missing {
 /// Increase when readers or checks would say something else of the same bytes.
 const READER: u64 = 2;
 
+/// The finished bands of a solve that takes long are stored so often, so that not even a crash loses more.
+const KEEP: Duration = Duration::from_secs(1);
+
 #[derive(Debug, Default)]
 struct Memory {
     contents: HashMap<PathBuf, (Stamp, ContentHash)>,
@@ -95,6 +99,7 @@ struct Inner {
     store: Store,
     index: Key,
     costs: Costs,
+    crew: Crew,
 }
 
 impl Library {
@@ -105,7 +110,8 @@ impl Library {
         let contents = contents.into_iter().map(|(path, stamp, content)| (path, (stamp, content))).collect();
         let memory = Mutex::new(Memory { contents, ..Memory::default() });
         let costs = Costs::open(&store, root);
-        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, index, costs }), trace)
+        let crew = Crew::default();
+        Self(Arc::new(Inner { memory, solved: Condvar::new(), store, index, costs, crew }), trace)
     }
 
     /// The same library with an account of its own: work for others is not counted here.
@@ -124,6 +130,11 @@ impl Library {
     /// What values cost when they were made.
     pub(super) fn costs(&self) -> &Costs {
         &self.0.costs
+    }
+
+    /// Threads without a model of their own help here.
+    pub(crate) fn crew(&self) -> &Crew {
+        &self.0.crew
     }
 
     pub(crate) fn store(&self) -> &Store {
@@ -276,7 +287,15 @@ impl Library {
             Err(RemeshError::Cancelled) => return Err(Missing::Cancelled),
             Err(error) => return Err(self.refuse(name, &error)),
         };
-        match spectrum::solve(&mesh, problem.choice, count, &known, watch) {
+        let kept = Cell::new(Instant::now());
+        let keep = |bands: &[Band]| {
+            if kept.get().elapsed() >= KEEP {
+                self.0.store.put(&begun_key, &bands.to_vec());
+                kept.set(Instant::now());
+            }
+        };
+        let request = Request { count, known: &known, crew: Some(&self.0.crew), keep: &keep };
+        match spectrum::solve_with(&mesh, problem.choice, &request, watch) {
             Ok(mut spectrum) => {
                 spectrum.notes.splice(0..0, problem.note());
                 self.0.store.update::<Spectrum>(&key, |stored| {

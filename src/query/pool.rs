@@ -179,6 +179,13 @@ fn work(shared: &Shared, thread: usize) {
                         Some(Running { job: job.clone(), slot, list, cancel: Arc::clone(&cancel) });
                     break (job, cancel);
                 }
+                // No model is left to begin: it helps with those that others are at.
+                if wanted.running.iter().any(Option::is_some) {
+                    drop(wanted);
+                    shared.library.crew().help(&Idle(shared));
+                    wanted = shared.wanted();
+                    continue;
+                }
                 wanted = shared.changed.wait(wanted).unwrap_or_else(PoisonError::into_inner);
             }
         };
@@ -213,6 +220,16 @@ fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));
     shared.library.spectrum(file, &known, job.problem, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))
+}
+
+/// Cancels when there is something better to do than to help, or nothing to help with.
+struct Idle<'a>(&'a Shared);
+
+impl Watch for Idle<'_> {
+    fn cancelled(&self) -> bool {
+        let wanted = self.0.wanted();
+        wanted.closed || !wanted.waiting.is_empty() || wanted.running.iter().all(Option::is_none)
+    }
 }
 
 /// Watches one job.

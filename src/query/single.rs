@@ -11,7 +11,7 @@ use super::{
 use crate::{
     mesh::{self, Format, GeometryHash, Survey},
     remesh::RemeshError,
-    spectrum::{self, Spectrum, SpectrumError},
+    spectrum::{self, Crew, Request, Spectrum, SpectrumError},
     store::Store,
     watch::Watch,
 };
@@ -46,13 +46,22 @@ pub enum SingleError {
 #[derive(Debug)]
 pub struct Singles {
     library: Option<Library>,
+    /// For solves without a store.
+    alone: Crew,
 }
 
 impl Singles {
     /// Keeps spectra in `store`, or nowhere.
     #[must_use]
     pub fn new(store: Option<Store>) -> Self {
-        Self { library: store.map(|store| Library::open(store, Trace::default(), Path::new(""))) }
+        let library = store.map(|store| Library::open(store, Trace::default(), Path::new("")));
+        Self { library, alone: Crew::default() }
+    }
+
+    /// Threads that have no file of their own can help here with those of others.
+    #[must_use]
+    pub fn crew(&self) -> &Crew {
+        self.library.as_ref().map_or(&self.alone, Library::crew)
     }
 
     /// The first `count` eigenvalues, or more, of the mesh in the file at `path`.
@@ -64,7 +73,7 @@ impl Singles {
         let format =
             Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
         let Some(library) = &self.library else {
-            return solve_alone(path, format, problem, count, watch);
+            return solve_alone(path, format, problem, (count, &self.alone), watch);
         };
         let stamp = match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => return Err(failed(&"a folder, not a mesh")),
@@ -94,7 +103,7 @@ fn solve_alone(
     path: &Path,
     format: Format,
     problem: Problem,
-    count: usize,
+    (count, crew): (usize, &Crew),
     watch: &dyn Watch,
 ) -> Result<Single, SingleError> {
     let start = Instant::now();
@@ -108,7 +117,9 @@ fn solve_alone(
         RemeshError::Cancelled => SingleError::Cancelled,
         error => SingleError::Failed(error.to_string()),
     })?;
-    let mut spectrum = spectrum::solve(&prepared, problem.choice, count, &[], watch).map_err(|error| match error {
+    let request = Request { crew: Some(crew), ..Request::new(count) };
+    let solved = spectrum::solve_with(&prepared, problem.choice, &request, watch);
+    let mut spectrum = solved.map_err(|error| match error {
         SpectrumError::Cancelled { .. } => SingleError::Cancelled,
         error => SingleError::Failed(error.to_string()),
     })?;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{krylov::Random, lanes::Row, slice::Sides, solve, tests::potato, *};
-use crate::watch::Unwatched;
+use crate::{laplacian::assemble, watch::Unwatched};
 
 /// What goes wrong.
 #[derive(Debug, Clone, Default)]
@@ -98,7 +98,7 @@ fn run(laplacian: &Laplacian, expected: &Spectrum, fault: Fault) -> (bool, bool)
     let (values, errors) = (expected.eigenvalues(), expected.residuals());
     let mut tools = part::Tools::default();
     tools.scratch.tamper.fault = fault;
-    let result = solve::solve(laplacian, 100, &[], &Unwatched, &mut tools);
+    let result = solve::solve(laplacian, &Request::new(100), &Unwatched, &mut tools);
     let tamper = &tools.scratch.tamper;
     let check = |at: usize, value: f64, error: f64| {
         let off = (value - values[at]).abs();

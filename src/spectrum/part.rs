@@ -1,4 +1,10 @@
 //! The chain of shifts along the λ axis of one connected piece, and the bands between them.
+//!
+//! A band takes three steps. Its upper shift is [placed](Piece::place) by what the band before counts, without looking
+//! at any eigenvalue; a process [looks](Piece::look) at the eigenvalues near that shift; and the band is
+//! [made](Piece::band) of what the processes at its two ends have seen. So processes at several shifts can run at
+//! once ([`team`](super::team)). [`Stretch`](super::window) takes the steps one after
+//! the other.
 
 use super::{
     band::Band,
@@ -25,90 +31,123 @@ const FIRST_LOOK: usize = 18;
 pub(super) struct Tools {
     pub factor: Factor,
     pub scratch: Scratch,
+    /// The most rows of a piece that they were used for.
+    pub largest: usize,
 }
 
-/// A connected piece with a sparse solver.
+/// A connected piece with a sparse solver; nothing of it changes while it is solved.
 #[derive(Debug)]
-pub(super) struct Part {
-    number: u32,
-    pencil: Pencil,
+pub(super) struct Piece {
+    pub number: u32,
+    pub pencil: Pencil,
     /// 1ᵀB1 in the scaled unit.
     measure: f64,
     /// What turns its λ into the mesh's.
-    unit: f64,
-    bands: Vec<Band>,
-    /// Where the chain begins, in the scaled unit, and how many eigenvalues are below: zero and none, unless only a
-    /// stretch of the spectrum is wanted.
-    origin: (f64, usize),
-    /// The right side of the last shift, if that process ran in this session.
-    right: Option<Side>,
+    pub unit: f64,
 }
 
-impl Part {
-    pub(super) fn new(number: u32, pencil: Pencil, unit: f64, known: &[Band]) -> Self {
+/// Where a chain has got to, in the scaled unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct End {
+    /// The place of the next band.
+    place: u32,
+    /// The last shift.
+    upper: f64,
+    /// How many eigenvalues lie below it.
+    above: usize,
+    /// How far the next shift is to be from it.
+    step: f64,
+    /// Where the right side of the process at the last shift gives over to the left side of the one at the next.
+    middle: f64,
+}
+
+impl End {
+    /// Where the last shift is.
+    pub(super) fn upper(&self) -> f64 {
+        self.upper
+    }
+
+    /// How many eigenvalues lie below it.
+    pub(super) fn above(&self) -> usize {
+        self.above
+    }
+
+    /// Whether both are at the same shift.
+    pub(super) fn is(&self, other: &Self) -> bool {
+        self.place == other.place && self.upper == other.upper
+    }
+
+    /// The end of a slice.
+    fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize)) -> Self {
+        let step = distance(lower, upper, counts.1 - counts.0);
+        Self { place: place + 1, upper, above: counts.1, step, middle: upper + 0.5 * step }
+    }
+}
+
+/// A shift that was placed, in the scaled unit, and the slice below it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shift {
+    place: u32,
+    lower: f64,
+    pub upper: f64,
+    below: usize,
+    pub above: usize,
+    middle: f64,
+    attempt: u32,
+}
+
+impl Shift {
+    /// Both ends of the slice and its eigenvalues.
+    pub(super) fn span(&self) -> (f64, f64, usize) {
+        (self.lower, self.upper, self.above - self.below)
+    }
+
+    pub(super) fn end(&self) -> End {
+        End::new(self.place, self.lower, self.upper, (self.below, self.above))
+    }
+
+    /// Where to try next when an eigenvalue turned out to be too near: moved by a rule that knows nothing but this
+    /// piece, so that it moves the same way every time.
+    pub(super) fn moved(&self) -> (f64, u32) {
+        (self.upper + 0.013 * (self.upper - self.lower), self.attempt + 1)
+    }
+}
+
+/// The distance to the next shift, from what the slice before had.
+fn distance(lower: f64, upper: f64, count: usize) -> f64 {
+    // The first slice begins at zero and is half as wide as the ones after it.
+    let width = if lower == 0.0 { 2.0 * upper } else { upper - lower };
+    let count = if lower == 0.0 { 2 * count } else { count };
+    (TARGET / (count.max(1) as f64) * width).clamp(0.5 * width, 2.5 * width)
+}
+
+impl Piece {
+    pub(super) fn new(number: u32, pencil: Pencil, unit: f64) -> Self {
         let measure = pencil.matrix.total_mass();
-        let mut mine: Vec<&Band> = known.iter().filter(|band| band.part == number).collect();
+        Self { number, pencil, measure, unit }
+    }
+
+    /// Those of the known bands that are of this piece and continue each other from zero.
+    pub(super) fn taken_over(&self, known: &[Band]) -> Vec<Band> {
+        let mut mine: Vec<&Band> = known.iter().filter(|band| band.part == self.number).collect();
         mine.sort_by_key(|band| band.place);
         let mut bands: Vec<Band> = Vec::new();
         for band in mine {
-            if band.follows(bands.last()) && band.above <= pencil.order() {
+            if band.follows(bands.last()) && band.above <= self.pencil.order() {
                 bands.push(band.clone());
             }
         }
-        Self { number, pencil, measure, unit, bands, origin: (0.0, 0), right: None }
+        bands
     }
 
-    pub(super) fn bands(&self) -> &[Band] {
-        &self.bands
-    }
-
-    /// Below which λ of the mesh all eigenvalues are known.
-    pub(super) fn frontier(&self) -> f64 {
-        self.bands.last().map_or(self.origin.0 * self.unit, |band| band.upper)
-    }
-
-    /// Whether its smallest eigenvalue is zero.
-    pub(super) fn has_kernel(&self) -> bool {
-        self.pencil.kernel
-    }
-
-    pub(super) fn finished(&self) -> bool {
-        self.counted() == self.pencil.order()
-    }
-
-    fn counted(&self) -> usize {
-        self.bands.last().map_or(self.origin.1, |band| band.above)
-    }
-
-    /// Lets the chain begin below a λ of the mesh, at a shift that is returned with the number of eigenvalues below it.
-    ///
-    /// # Errors
-    /// When cancelled, or when no shift there will do.
-    pub(super) fn begin_below(
-        &mut self,
-        lambda: f64,
-        tools: &mut Tools,
-        poll: &mut Poll,
-    ) -> Result<(f64, usize), Advance> {
-        let mut sigma = lambda / self.unit;
-        let half = self.first_half();
-        for _ in 0..60 {
-            sigma -= 0.013 * half;
-            if sigma <= 0.0 {
-                return Ok((0.0, 0));
+    /// The end of a chain with these bands.
+    pub(super) fn end(&self, bands: &[Band]) -> End {
+        match bands.last() {
+            None => End { place: 0, upper: 0.0, above: 0, step: self.first_half(), middle: 0.0 },
+            Some(band) => {
+                End::new(band.place, band.lower / self.unit, band.upper / self.unit, (band.below, band.above))
             }
-            let Some(below) = self.factor(tools, sigma, poll)? else { continue };
-            let near = 1e-6 * half / TARGET;
-            let task = Task { sigma, above: below, left: 0.0, right: Some(half), near };
-            match self.process(tools, task, poll) {
-                Ok(sides) => self.right = Some(sides.right),
-                Err(Advance::TooNear) => continue,
-                Err(other) => return Err(other),
-            }
-            self.origin = (sigma, below);
-            return Ok((sigma * self.unit, below));
         }
-        Err(Advance::Uncertified { at: lambda })
     }
 
     /// Half of what a slice spans by Weyl's law: λ grows by 4π over the area from one eigenvalue to the next.
@@ -116,102 +155,139 @@ impl Part {
         0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure
     }
 
-    /// Ends of the last band in the scaled unit, and its eigenvalues.
-    fn last(&self) -> Option<(f64, f64, usize)> {
-        self.bands.last().map(|band| (band.lower / self.unit, band.upper / self.unit, band.values.len()))
-    }
-
-    /// The distance to the next shift, from what the slice before had: `(lower, upper, eigenvalues)`.
-    fn step(lower: f64, upper: f64, count: usize) -> f64 {
-        // The first slice begins at zero and is half as wide as the ones after it.
-        let width = if lower == 0.0 { 2.0 * upper } else { upper - lower };
-        let count = if lower == 0.0 { 2 * count } else { count };
-        (TARGET / (count.max(1) as f64) * width).clamp(0.5 * width, 2.5 * width)
-    }
-
-    /// Solves the next band, knowing that no more than `count` eigenvalues are wanted in all: that spares work which
-    /// only bands above it need.
+    /// A beginning of a chain below a λ of the mesh: its end, and what the process there sees on its right side. `None`
+    /// when it is at zero.
     ///
     /// # Errors
-    /// When cancelled, or when the certificate cannot be had.
-    pub(super) fn advance(&mut self, tools: &mut Tools, count: usize, poll: &mut Poll) -> Result<(), Advance> {
-        if self.right.is_none()
-            && let Some((lower, upper, within)) = self.last()
-        {
-            // The process at the last shift once more: it ran in another session, and took the same course there.
-            let found = self.factor(tools, upper, poll)?;
-            if found != Some(self.counted()) {
-                return Err(Advance::Uncertified { at: upper * self.unit });
+    /// When cancelled, or when no shift there will do.
+    pub(super) fn begin_below(
+        &self,
+        lambda: f64,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Option<(End, Side)>, Advance> {
+        let mut sigma = lambda / self.unit;
+        let half = self.first_half();
+        for _ in 0..60 {
+            sigma -= 0.013 * half;
+            if sigma <= 0.0 {
+                return Ok(None);
             }
-            let task = Task {
-                sigma: upper,
-                above: self.counted(),
-                left: upper - self.middle(self.bands.len() - 1),
-                right: Some(0.5 * Self::step(lower, upper, within)),
-                near: 0.0,
-            };
-            self.right = Some(self.process(tools, task, poll)?.right);
+            let Some(above) = self.factor(tools, sigma, poll)? else { continue };
+            let near = 1e-6 * half / TARGET;
+            match self.process(tools, Task { sigma, above, left: 0.0, right: Some(half), near }, poll) {
+                Ok(sides) => {
+                    let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
+                    return Ok(Some((end, sides.right)));
+                }
+                Err(Advance::TooNear) => {}
+                Err(other) => return Err(other),
+            }
         }
-        let (lower, mut upper) = match self.last() {
-            None if self.origin.0 > 0.0 => (self.origin.0, self.origin.0 + 2.0 * self.first_half()),
-            None => (0.0, self.first_half()),
-            Some((lower, upper, count)) => (upper, upper + Self::step(lower, upper, count)),
-        };
-        let below = self.counted();
-        let middle = self.middle(self.bands.len());
-        let right = self.right.take().unwrap_or_default();
-        // A shift on top of an eigenvalue, or one with too many before it, is moved by a rule that knows nothing but
-        // this part, so that it moves the same way every time.
-        for attempt in 0..60 {
+        Err(Advance::Uncertified { at: lambda })
+    }
+
+    /// The process at the last shift of these bands once more, for its right side: it ran in another session, and takes
+    /// the same course as there.
+    ///
+    /// # Errors
+    /// When cancelled, or when the count is another one than the bands say.
+    pub(super) fn resume(&self, bands: &[Band], tools: &mut Tools, poll: &mut Poll) -> Result<Sides, Advance> {
+        let end = self.end(bands);
+        let found = self.factor(tools, end.upper, poll)?;
+        if found != Some(end.above) {
+            return Err(Advance::Uncertified { at: end.upper * self.unit });
+        }
+        let before = self.end(&bands[..bands.len() - 1]);
+        let (left, right) = (end.upper - before.middle, Some(0.5 * end.step));
+        self.process(tools, Task { sigma: end.upper, above: end.above, left, right, near: 0.0 }, poll)
+    }
+
+    /// Places the shift after an end, and leaves its factor in the tools. `again` is where to try first, and how often
+    /// it was tried, when the shift had to move.
+    ///
+    /// # Errors
+    /// When cancelled, or when no shift there will do.
+    pub(super) fn place(
+        &self,
+        end: &End,
+        again: Option<(f64, u32)>,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Shift, Advance> {
+        let (lower, below) = (end.upper, end.above);
+        let (mut upper, first) = again.unwrap_or((end.upper + end.step, 0));
+        // A shift on top of an eigenvalue, or one with too many before it, is moved.
+        for attempt in first..60 {
             let Some(above) = self.factor(tools, upper, poll)? else {
                 upper += 0.013 * (upper - lower);
                 continue;
             };
-            let Some(total) = above.checked_sub(below) else {
-                return Err(Advance::Uncertified { at: upper * self.unit });
-            };
+            let Some(total) = above.checked_sub(below) else { break };
             let most = if lower == 0.0 { MOST / 2 } else { MOST };
             if total > most && upper - lower > 1e-7 * upper && attempt < 40 {
                 upper = lower + (upper - lower) * (0.8 * TARGET / total as f64).clamp(0.1, 0.8);
                 continue;
             }
-            let half = 0.5 * Self::step(lower, upper, total);
-            let task = Task {
-                sigma: upper,
-                above,
-                left: upper - middle,
-                right: (above < count).then_some(half),
-                near: 1e-6 * (upper - lower) / total.max(1) as f64,
-            };
-            let sides = match self.process(tools, task, poll) {
-                Ok(sides) => sides,
-                Err(Advance::TooNear) => {
-                    upper += 0.013 * (upper - lower);
-                    continue;
-                }
-                Err(other) => return Err(other),
-            };
-            let joined = join(&right.found, &sides.left.found, total);
-            let mut found = match joined {
-                Some(found) => found,
-                None => thorough(&self.pencil, tools, lower..upper, total, self.seed(1), poll)?
-                    .ok_or(Advance::Uncertified { at: upper * self.unit })?,
-            };
-            sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
-            self.right = task.right.map(|_| sides.right);
-            return self.finish(lower, upper, above, found);
+            return Ok(Shift { place: end.place, lower, upper, below, above, middle: end.middle, attempt });
         }
         Err(Advance::Uncertified { at: upper * self.unit })
     }
 
-    /// Where the right side of the process below a band gives over to the left side of the one above it.
-    fn middle(&self, place: usize) -> f64 {
-        let start = if self.origin.0 > 0.0 { self.origin.0 + self.first_half() } else { 0.0 };
-        place.checked_sub(1).map_or(start, |before| {
-            let band = &self.bands[before];
-            let (lower, upper) = (band.lower / self.unit, band.upper / self.unit);
-            upper + 0.5 * Self::step(lower, upper, band.values.len())
-        })
+    /// Factors at a shift that was placed, once more.
+    ///
+    /// # Errors
+    /// When cancelled, or when the count is another one than before.
+    pub(super) fn return_to(&self, shift: &Shift, tools: &mut Tools, poll: &mut Poll) -> Result<(), Advance> {
+        let found = self.factor(tools, shift.upper, poll)?;
+        if found == Some(shift.above) { Ok(()) } else { Err(Advance::Uncertified { at: shift.upper * self.unit }) }
+    }
+
+    /// Looks at the eigenvalues near a shift whose factor is in the tools. No more than `count` eigenvalues are wanted
+    /// in all: that spares work which only bands above need.
+    ///
+    /// # Errors
+    /// When cancelled, or when an eigenvalue is too near.
+    pub(super) fn look(
+        &self,
+        shift: &Shift,
+        count: usize,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Sides, Advance> {
+        let &Shift { lower, upper, below, above, middle, .. } = shift;
+        let task = Task {
+            sigma: upper,
+            above,
+            left: upper - middle,
+            right: (above < count).then_some(0.5 * shift.end().step),
+            near: 1e-6 * (upper - lower) / (above - below).max(1) as f64,
+        };
+        self.process(tools, task, poll)
+    }
+
+    /// The band below a shift, from the right side of the process at its lower end and the left side of that at the
+    /// shift.
+    ///
+    /// # Errors
+    /// When cancelled, or when the certificate cannot be had.
+    pub(super) fn band(
+        &self,
+        shift: &Shift,
+        right: &Side,
+        left: &Side,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Band, Advance> {
+        let &Shift { lower, upper, below, above, .. } = shift;
+        let total = above - below;
+        let mut found = match join(&right.found, &left.found, total) {
+            Some(found) => found,
+            None => thorough(&self.pencil, tools, lower..upper, total, self.seed(1, shift.place), poll)?
+                .ok_or(Advance::Uncertified { at: upper * self.unit })?,
+        };
+        sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
+        self.finish(shift, found)
     }
 
     /// Factors at σ and counts; `None` when rounding may have spoilt the factor, so that σ has to move.
@@ -227,8 +303,8 @@ impl Part {
         }
     }
 
-    fn seed(&self, kind: u64) -> u64 {
-        (kind << 62) ^ (u64::from(self.number) << 32) ^ self.bands.len() as u64
+    fn seed(&self, kind: u64, place: u32) -> u64 {
+        (kind << 62) ^ (u64::from(self.number) << 32) ^ u64::from(place)
     }
 
     /// Runs Lanczos at a factored shift until both sides reach as far as they are asked to.
@@ -236,7 +312,7 @@ impl Part {
         let Task { sigma, above, left, right, near } = task;
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
-        let Tools { factor, scratch } = tools;
+        let Tools { factor, scratch, .. } = tools;
         poll.meter.timings.processes += 1;
         let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, Purpose::Values, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
@@ -279,11 +355,11 @@ impl Part {
         Ok(done)
     }
 
-    /// Appends the band.
-    fn finish(&mut self, lower: f64, upper: f64, above: usize, mut found: Vec<Found>) -> Result<(), Advance> {
-        let first = self.bands.is_empty() && self.origin.0 == 0.0;
+    /// The band of these eigenvalues.
+    fn finish(&self, shift: &Shift, mut found: Vec<Found>) -> Result<Band, Advance> {
+        let &Shift { place, lower, upper, below, above, .. } = shift;
         let failed = Advance::Uncertified { at: upper * self.unit };
-        let zeros = usize::from(first && self.pencil.kernel);
+        let zeros = usize::from(lower == 0.0 && self.pencil.kernel);
         if zeros == 1 {
             // It is the smallest eigenvalue, and every other one is above it.
             let Some(zero) = found.first_mut() else { return Err(failed) };
@@ -295,18 +371,17 @@ impl Part {
         if found.get(zeros).is_some_and(|next| next.value <= 0.0) {
             return Err(failed);
         }
-        self.bands.push(Band {
+        Ok(Band {
             part: self.number,
-            place: self.bands.len() as u32,
+            place,
             lower: lower * self.unit,
             upper: if above == self.pencil.order() { f64::MAX } else { upper * self.unit },
-            below: self.counted(),
+            below,
             above,
             zeros,
             values: found.iter().map(|found| found.value * self.unit).collect(),
             errors: found.iter().map(|found| found.error * self.unit).collect(),
-        });
-        Ok(())
+        })
     }
 }
 
@@ -325,7 +400,7 @@ struct Task {
 }
 
 /// Why a part does not advance.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum Advance {
     Cancelled,
     TooNear,

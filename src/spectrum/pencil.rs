@@ -1,7 +1,10 @@
 //! L and B of one connected piece, ready for the solver.
 
 use super::factor::{Symbolic, order};
-use crate::laplacian::{MassMatrix, Symmetric};
+use crate::{
+    laplacian::{MassMatrix, Symmetric},
+    watch::{Pulse, Stopped},
+};
 
 /// The pair (L, B) in the order of elimination, with the structure of its factor.
 #[derive(Debug)]
@@ -26,20 +29,37 @@ pub(super) enum Product {
 
 impl Pencil {
     /// Orders and analyses. `None` when the ordering runs out of memory.
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn watched(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Self>, Stopped> {
+        match order(matrix, pulse)? {
+            Some(order) => Ok(Some(Self::ordered(matrix.select(&order, pulse)?, pulse)?)),
+            None => Ok(None),
+        }
+    }
+
+    /// The same without a watch.
+    #[cfg(test)]
     pub(super) fn new(matrix: &Symmetric) -> Option<Self> {
-        Some(Self::ordered(matrix.select(&order(matrix)?)))
+        Self::watched(matrix, &Pulse::new(&crate::watch::Unwatched)).ok()?
     }
 
     /// Analyses matrices that are in the order of elimination.
-    pub(super) fn ordered(matrix: Symmetric) -> Self {
-        let symbolic = Symbolic::new(&matrix);
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn ordered(matrix: Symmetric, pulse: &Pulse) -> Result<Self, Stopped> {
+        let symbolic = Symbolic::new(&matrix, pulse)?;
+        pulse.beat(30 * matrix.rows.len())?;
         let mass = match &matrix.mass {
             MassMatrix::Unit => Product::Unit,
             MassMatrix::Diagonal(values) => Product::Diagonal(values.clone()),
             MassMatrix::Full(values) => by_rows(&matrix, values),
         };
+        pulse.beat(10 * matrix.rows.len())?;
         let kernel = has_kernel(&matrix);
-        Self { matrix, symbolic, mass, kernel }
+        Ok(Self { matrix, symbolic, mass, kernel })
     }
 
     /// Number of rows.

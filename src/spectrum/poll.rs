@@ -32,6 +32,11 @@ impl<'a> Poll<'a> {
         Self { watch, spent: 0, meter: Meter::start() }
     }
 
+    /// What it asks.
+    pub(super) fn watch(&self) -> &'a dyn Watch {
+        self.watch
+    }
+
     /// Charges the time since the last charge to a part of the work.
     pub(super) fn charge(&mut self, cost: Cost) {
         self.meter.charge(cost);

@@ -1,78 +1,76 @@
 //! A mesh's pieces, and which of them is solved further.
 
+use std::sync::Arc;
+
 use super::{
-    Spectrum, SpectrumError,
+    Request, Spectrum, SpectrumError,
     band::Band,
     dense::{LARGEST, dense},
-    part::{Advance, Part, Tools},
+    part::{Piece, Tools},
     pencil::Pencil,
     poll::Poll,
     slice::Found,
+    team::Team,
     timings::Cost,
 };
-use crate::{laplacian::Laplacian, watch::Watch};
+use crate::{
+    laplacian::{Laplacian, Symmetric},
+    watch::{Pulse, Stopped, Watch},
+};
 
+/// Solves as much of (L, B) as is asked for.
 pub(super) fn solve(
     laplacian: &Laplacian,
-    count: usize,
-    known: &[Band],
+    request: &Request,
     watch: &dyn Watch,
     tools: &mut Tools,
 ) -> Result<Spectrum, SpectrumError> {
+    let known = request.known;
     let order = laplacian.matrix.order();
-    let count = count.min(order);
-    let mut poll = Poll::new(watch);
+    let count = request.count.min(order);
+    let (mut poll, pulse) = (Poll::new(watch), Pulse::new(watch));
+    let stopped = |stopped: Stopped| SpectrumError::from(stopped).keeping(known);
     let (small, large) = pieces(laplacian);
-    let mut state = State { small: None, parts: Vec::with_capacity(large.len()), order };
-    if !small.is_empty() {
-        state.small = Some(small_pieces(laplacian, &small, known, watch)?);
-        poll.charge(Cost::Dense);
-    }
+    let small = if small.is_empty() { None } else { Some(small_pieces(laplacian, &small, known, watch)?) };
+    poll.charge(Cost::Dense);
+    let mut parts = Vec::with_capacity(large.len());
     for rows in &large {
-        let number = state.parts.len() as u32 + 1;
-        if watch.cancelled() {
-            return Err(SpectrumError::Cancelled { finished: known.to_vec() });
-        }
-        let matrix = if large.len() == 1 && small.is_empty() { None } else { Some(laplacian.matrix.select(rows)) };
-        let pencil = Pencil::new(matrix.as_ref().unwrap_or(&laplacian.matrix))
-            .ok_or_else(|| SpectrumError::Refused("not enough memory to order the vertices".to_owned()))?;
+        let number = parts.len() as u32 + 1;
+        let matrix = if large.len() == 1 && small.is_none() {
+            None
+        } else {
+            Some(laplacian.matrix.select(rows, &pulse).map_err(stopped)?)
+        };
+        let pencil =
+            pencil(matrix.as_ref().unwrap_or(&laplacian.matrix), watch).map_err(|error| error.keeping(known))?;
         poll.charge(Cost::Ordering);
         poll.meter.timings.entries += pencil.symbolic.values();
         poll.meter.timings.multiplications += pencil.symbolic.multiplications();
-        state.parts.push(Part::new(number, pencil, laplacian.unit(), known));
+        parts.push(Piece::new(number, pencil, laplacian.unit()));
     }
-    loop {
-        let done = state.certified();
-        watch.progress(done.min(count), count);
-        if done >= count {
-            break;
-        }
-        let Some(part) = state.lowest() else { break };
-        match part.advance(tools, count, &mut poll) {
-            Ok(()) => {}
-            Err(Advance::Cancelled) => return Err(SpectrumError::Cancelled { finished: state.bands() }),
-            Err(Advance::Uncertified { at }) => {
-                return Err(SpectrumError::Uncertified { at, finished: state.bands() });
-            }
-            Err(Advance::TooNear) => {
-                return Err(SpectrumError::Uncertified { at: part.frontier(), finished: state.bands() });
-            }
-        }
-    }
-    let zeros =
-        state.small.as_ref().map_or(0, |band| band.zeros) + state.parts.iter().filter(|part| part.has_kernel()).count();
+    let pieces = parts.len() as u32 + 1;
+    let team = Arc::new(Team::new(parts, small, count, known));
+    let opened = request.crew.map(|crew| crew.opens(&team));
+    let bands = team.lead(tools, &mut poll, watch, request.keep)?;
+    drop(opened);
     Ok(Spectrum {
-        bands: state.bands(),
-        parts: state.parts.len() as u32 + 1,
+        zeros: bands.iter().find(|band| band.part == 0).map_or(0, |band| band.zeros) + team.kernels(),
+        bands,
+        parts: pieces,
         order,
         measure: laplacian.measure(),
-        zeros,
         notes: laplacian.notes.clone(),
         timings: {
             poll.charge(Cost::Rest);
             poll.meter.timings
         },
     })
+}
+
+/// L and B of a piece, ready for the solver.
+pub(super) fn pencil(matrix: &Symmetric, watch: &dyn Watch) -> Result<Pencil, SpectrumError> {
+    Pencil::watched(matrix, &Pulse::new(watch))?
+        .ok_or_else(|| SpectrumError::Refused("not enough memory to order the vertices".to_owned()))
 }
 
 /// The rows of the connected components: those for the dense solver, and those for the sparse one.
@@ -96,12 +94,15 @@ fn small_pieces(
     if let Some(band) = known.iter().find(|band| band.part == 0 && band.follows(None) && band.above == rows) {
         return Ok(band.clone());
     }
+    let pulse = Pulse::new(watch);
     let mut all: Vec<Found> = Vec::with_capacity(rows);
     for rows in small {
         if watch.cancelled() {
             return Err(SpectrumError::Cancelled { finished: known.to_vec() });
         }
-        let found = dense(&laplacian.matrix.select(rows)).ok_or_else(|| {
+        let matrix =
+            laplacian.matrix.select(rows, &pulse).map_err(|stopped| SpectrumError::from(stopped).keeping(known))?;
+        let found = dense(&matrix).ok_or_else(|| {
             let vertex = rows.first().map_or(0, |&row| laplacian.vertices[row as usize]);
             SpectrumError::Refused(format!(
                 "the piece of {} vertices at vertex {vertex} is too degenerate to solve",
@@ -123,32 +124,4 @@ fn small_pieces(
         values: all.iter().map(|found| found.value * unit).collect(),
         errors: all.iter().map(|found| found.error * unit).collect(),
     })
-}
-
-/// What is known so far.
-struct State {
-    small: Option<Band>,
-    parts: Vec<Part>,
-    order: usize,
-}
-
-impl State {
-    /// The unfinished part of which the least is known.
-    fn lowest(&mut self) -> Option<&mut Part> {
-        self.parts.iter_mut().filter(|part| !part.finished()).min_by(|a, b| a.frontier().total_cmp(&b.frontier()))
-    }
-
-    /// How many eigenvalues of the whole mesh are certified: those below what is known of every part.
-    fn certified(&self) -> usize {
-        let limit = self.parts.iter().filter(|part| !part.finished()).map(Part::frontier).fold(f64::MAX, f64::min);
-        let bands = self.parts.iter().flat_map(Part::bands).chain(&self.small);
-        let below = bands.map(|band| {
-            if band.upper <= limit { band.values.len() } else { band.values.partition_point(|&value| value <= limit) }
-        });
-        below.sum::<usize>().min(self.order)
-    }
-
-    fn bands(&self) -> Vec<Band> {
-        self.small.iter().chain(self.parts.iter().flat_map(Part::bands)).cloned().collect()
-    }
 }

@@ -4,11 +4,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{shapes, *};
 use crate::{
-    laplacian::{Mass, Operator},
-    watch::Unwatched,
+    laplacian::{Mass, Operator, assemble},
+    watch::{Pulse, Unwatched},
 };
 
-const FEM: Choice = Choice::new(Operator::Fem, Mass::Consistent);
+pub(super) const FEM: Choice = Choice::new(Operator::Fem, Mass::Consistent);
 const LUMPED: Choice = Choice::new(Operator::Fem, Mass::Lumped);
 const COT: Choice = Choice::new(Operator::Cot, Mass::Consistent);
 
@@ -20,7 +20,7 @@ fn values(mesh: &Mesh, choice: Choice, count: usize) -> Vec<f64> {
     values
 }
 
-fn bits(values: &[f64]) -> Vec<u64> {
+pub(super) fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
 }
 
@@ -171,8 +171,8 @@ fn more_eigenvalues_are_the_same_ones_and_further_ones() {
 }
 
 /// Cancels for good at the n-th question.
-struct Impatient {
-    left: AtomicUsize,
+pub(super) struct Impatient {
+    pub left: AtomicUsize,
 }
 
 impl Watch for Impatient {
@@ -314,7 +314,7 @@ fn a_piece_that_is_held_has_no_zero() {
             x > 0 && x < 2 * b && y > 0 && y < b
         };
         let rows: Vec<u32> = (0..laplacian.matrix.order() as u32).filter(inside).collect();
-        laplacian.matrix = laplacian.matrix.select(&rows);
+        laplacian.matrix = laplacian.matrix.select(&rows, &Pulse::new(&Unwatched)).unwrap();
         laplacian.vertices = rows;
         laplacian.component.truncate(laplacian.matrix.order());
         laplacian

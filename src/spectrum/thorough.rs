@@ -50,7 +50,7 @@ pub(super) fn thorough(
         let room = (pencil.order() - 1) / WIDTH;
         let blocks = BLOCKS.min(room.saturating_sub(locked.len())).max(1);
         let seed = seed ^ round.rotate_left(40);
-        let Tools { factor, scratch } = tools;
+        let Tools { factor, scratch, .. } = tools;
         let mut krylov = Krylov::start(pencil, factor, pole, seed, Purpose::Vectors(&locked), scratch, poll)?;
         for _ in 0..blocks {
             krylov.step(poll)?;

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     laplacian::{Laplacian, Symmetric},
-    watch::Watch,
+    watch::{Pulse, Stopped, Watch},
 };
 
 mod forms;
@@ -80,7 +80,7 @@ pub(super) fn eigenvectors(
             .map(|(at, &index)| (at, places[index].at))
             .collect();
         let made = match part.checked_sub(1) {
-            None => of_small_pieces(laplacian, &small, &mine),
+            None => of_small_pieces(laplacian, &small, &mine, &Pulse::new(watch)),
             Some(large_one) => large
                 .get(large_one as usize)
                 .map_or(Ok(Vec::new()), |rows| of_part(laplacian, rows, spectrum, part, &mine, &mut tools, &mut poll)),
@@ -101,6 +101,12 @@ pub(super) fn eigenvectors(
 enum Missing {
     Cancelled,
     Lost(f64),
+}
+
+impl From<Stopped> for Missing {
+    fn from(_: Stopped) -> Self {
+        Self::Cancelled
+    }
 }
 
 impl Missing {
@@ -156,10 +162,10 @@ fn placed(laplacian: &Laplacian, rows: &[u32], (value, residual): (f64, f64), x:
     Eigenvector { index: 0, value: value * unit, residual: residual * unit, values }
 }
 
-fn of_small_pieces(laplacian: &Laplacian, small: &[Vec<u32>], mine: &[(usize, usize)]) -> Made {
+fn of_small_pieces(laplacian: &Laplacian, small: &[Vec<u32>], mine: &[(usize, usize)], pulse: &Pulse) -> Made {
     let mut all = Vec::new();
     for (piece, rows) in small.iter().enumerate() {
-        let matrix = laplacian.matrix.select(rows);
+        let matrix = laplacian.matrix.select(rows, pulse)?;
         let values = super::dense::dense(&matrix).ok_or(Missing::Lost(0.0))?;
         all.extend(values.iter().enumerate().map(|(at, found)| (found.value, piece, at)));
     }
@@ -167,7 +173,7 @@ fn of_small_pieces(laplacian: &Laplacian, small: &[Vec<u32>], mine: &[(usize, us
     let mut made = Vec::new();
     for &(answer, index) in mine {
         let &(value, piece, at) = all.get(index).ok_or(Missing::Lost(0.0))?;
-        let matrix = laplacian.matrix.select(&small[piece]);
+        let matrix = laplacian.matrix.select(&small[piece], pulse)?;
         let x = direct(&matrix, at).ok_or(Missing::Lost(value))?;
         let bound = residual(&matrix, value, &x);
         made.push((answer, placed(laplacian, &small[piece], (value, bound), &x)));
@@ -185,10 +191,11 @@ fn of_part(
     poll: &mut Poll,
 ) -> Made {
     // The rows of the piece in the order of elimination.
-    let matrix = laplacian.matrix.select(rows);
-    let order = super::factor::order(&matrix).ok_or(Missing::Lost(0.0))?;
+    let pulse = &Pulse::new(poll.watch());
+    let matrix = laplacian.matrix.select(rows, pulse)?;
+    let order = super::factor::order(&matrix, pulse)?.ok_or(Missing::Lost(0.0))?;
     let rows: Vec<u32> = order.iter().map(|&at| rows[at as usize]).collect();
-    let pencil = Pencil::ordered(matrix.select(&order));
+    let pencil = Pencil::ordered(matrix.select(&order, pulse)?, pulse)?;
     poll.charge(Cost::Ordering);
     let mut made = Vec::new();
     for band in spectrum.bands.iter().filter(|band| band.part == part) {
@@ -289,7 +296,7 @@ fn window(
     let sigma = pole.ok_or_else(lost)?;
     let margin = 1e-4 * spacing;
     let seed = sigma.to_bits().rotate_left(29);
-    let Tools { factor, scratch } = tools;
+    let Tools { factor, scratch, .. } = tools;
     let mut krylov =
         Krylov::start(pencil, factor, sigma, seed, Purpose::Vectors(&[]), scratch, poll).map_err(stopped)?;
     let room = (pencil.order() - 1) / WIDTH;

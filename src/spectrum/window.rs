@@ -4,14 +4,18 @@ use std::ops::Range;
 
 use super::{
     Count, SpectrumError,
+    band::Band,
     dense::dense,
-    part::{Advance, Part, Tools},
-    pencil::Pencil,
+    part::{Advance, End, Piece, Tools},
     poll::Poll,
-    solve::pieces,
+    slice::Side,
+    solve::{pencil, pieces},
     timings::{Cost, Timings},
 };
-use crate::{laplacian::Laplacian, watch::Watch};
+use crate::{
+    laplacian::Laplacian,
+    watch::{Pulse, Watch},
+};
 
 /// All eigenvalues between two numbers, certified complete by inertia counts on both sides.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +35,7 @@ pub struct Window {
 pub(super) fn between(laplacian: &Laplacian, range: Range<f64>, watch: &dyn Watch) -> Result<Window, SpectrumError> {
     let unit = laplacian.unit();
     let cancelled = || SpectrumError::Cancelled { finished: Vec::new() };
-    let mut poll = Poll::new(watch);
+    let (mut poll, pulse) = (Poll::new(watch), Pulse::new(watch));
     let mut tools = Tools::default();
     let (small, large) = pieces(laplacian);
     let mut found: Vec<(f64, f64)> = Vec::new();
@@ -48,7 +52,7 @@ pub(super) fn between(laplacian: &Laplacian, range: Range<f64>, watch: &dyn Watc
         if watch.cancelled() {
             return Err(cancelled());
         }
-        let all = dense(&laplacian.matrix.select(rows))
+        let all = dense(&laplacian.matrix.select(rows, &pulse)?)
             .ok_or_else(|| SpectrumError::Refused("a small piece is too degenerate to solve".to_owned()))?;
         for one in all {
             take(one.value * unit, one.error * unit, &mut below);
@@ -57,24 +61,23 @@ pub(super) fn between(laplacian: &Laplacian, range: Range<f64>, watch: &dyn Watc
     poll.charge(Cost::Dense);
     for (at, rows) in large.iter().enumerate() {
         let number = at as u32 + 1;
-        let pencil = Pencil::new(&laplacian.matrix.select(rows))
-            .ok_or_else(|| SpectrumError::Refused("not enough memory to order the vertices".to_owned()))?;
+        let pencil = pencil(&laplacian.matrix.select(rows, &pulse)?, watch)?;
         poll.charge(Cost::Ordering);
-        let mut part = Part::new(number, pencil, unit, &[]);
+        let mut stretch = Stretch::new(Piece::new(number, pencil, unit));
         let failed = |advance| match advance {
             Advance::Cancelled => cancelled(),
             Advance::TooNear => SpectrumError::Uncertified { at: range.start, finished: Vec::new() },
             Advance::Uncertified { at } => SpectrumError::Uncertified { at, finished: Vec::new() },
         };
         if range.start > 0.0 {
-            let (shift, count) = part.begin_below(range.start, &mut tools, &mut poll).map_err(failed)?;
+            let (shift, count) = stretch.begin_below(range.start, &mut tools, &mut poll).map_err(failed)?;
             below += count;
             certificate.push(Count { part: number, shift, below: count });
         }
-        while !part.finished() && part.frontier() <= range.end {
-            let done = part.bands().len();
-            part.advance(&mut tools, usize::MAX, &mut poll).map_err(failed)?;
-            for band in &part.bands()[done..] {
+        while !stretch.finished() && stretch.frontier() <= range.end {
+            let done = stretch.bands.len();
+            stretch.advance(&mut tools, &mut poll).map_err(failed)?;
+            for band in &stretch.bands[done..] {
                 certificate.push(Count { part: number, shift: band.upper, below: band.above });
                 for (&value, &error) in band.values.iter().zip(&band.errors) {
                     take(value, error, &mut below);
@@ -118,5 +121,59 @@ pub(super) fn near(
             return Ok(Window { timings, ..window });
         }
         half *= 1.6;
+    }
+}
+
+/// A stretch of the chain of one piece, band by band on one thread.
+#[derive(Debug)]
+struct Stretch {
+    piece: Piece,
+    bands: Vec<Band>,
+    end: End,
+    /// The right side of the last shift.
+    right: Side,
+}
+
+impl Stretch {
+    /// Begins at zero.
+    fn new(piece: Piece) -> Self {
+        let end = piece.end(&[]);
+        Self { piece, bands: Vec::new(), end, right: Side::default() }
+    }
+
+    /// Below which λ of the mesh all eigenvalues are known that are not below the beginning.
+    fn frontier(&self) -> f64 {
+        self.bands.last().map_or(self.end.upper() * self.piece.unit, |band| band.upper)
+    }
+
+    fn finished(&self) -> bool {
+        self.end.above() == self.piece.pencil.order()
+    }
+
+    /// Lets the chain begin below a λ of the mesh, at a shift that is returned with the number of eigenvalues below it.
+    fn begin_below(&mut self, lambda: f64, tools: &mut Tools, poll: &mut Poll) -> Result<(f64, usize), Advance> {
+        let Some((end, right)) = self.piece.begin_below(lambda, tools, poll)? else { return Ok((0.0, 0)) };
+        (self.end, self.right) = (end, right);
+        Ok((self.frontier(), end.above()))
+    }
+
+    /// Makes the next band.
+    ///
+    /// # Errors
+    /// When cancelled, or when the certificate cannot be had.
+    fn advance(&mut self, tools: &mut Tools, poll: &mut Poll) -> Result<(), Advance> {
+        let mut again = None;
+        let (shift, sides) = loop {
+            let shift = self.piece.place(&self.end, again, tools, poll)?;
+            match self.piece.look(&shift, usize::MAX, tools, poll) {
+                Ok(sides) => break (shift, sides),
+                Err(Advance::TooNear) => again = Some(shift.moved()),
+                Err(other) => return Err(other),
+            }
+        };
+        self.bands.push(self.piece.band(&shift, &self.right, &sides.left, tools, poll)?);
+        self.end = shift.end();
+        self.right = sides.right;
+        Ok(())
     }
 }

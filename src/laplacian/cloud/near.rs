@@ -1,5 +1,7 @@
 //! Nearest neighbours among points: a k-d tree without pointers.
 
+use crate::watch::{Pulse, Stopped};
+
 /// Points in the order of a k-d tree: the median of each range, by the axis along which it extends most, stands in its
 /// middle.
 pub(super) struct Tree {
@@ -11,11 +13,11 @@ pub(super) struct Tree {
 const LEAF: usize = 12;
 
 impl Tree {
-    pub(super) fn new(points: &[[f64; 3]]) -> Self {
+    pub(super) fn new(points: &[[f64; 3]], pulse: &Pulse) -> Result<Self, Stopped> {
         let mut items: Vec<_> = points.iter().copied().zip(0..).collect();
         let mut axes = vec![0; items.len()];
-        split(&mut items, &mut axes);
-        Self { items, axes }
+        split(&mut items, &mut axes, pulse)?;
+        Ok(Self { items, axes })
     }
 
     /// The `count` points nearest to a place, by distance and then by number, as squared distances and numbers.
@@ -59,10 +61,11 @@ impl Tree {
 }
 
 /// Orders the items of a range; the depth is that of a balanced tree.
-fn split(items: &mut [([f64; 3], u32)], axes: &mut [u8]) {
+fn split(items: &mut [([f64; 3], u32)], axes: &mut [u8], pulse: &Pulse) -> Result<(), Stopped> {
     if items.len() <= LEAF {
-        return;
+        return Ok(());
     }
+    pulse.beat(20 * items.len())?;
     let extent = |axis: usize| {
         let ends = items.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (point, _)| {
             (low.min(point[axis]), high.max(point[axis]))
@@ -75,8 +78,8 @@ fn split(items: &mut [([f64; 3], u32)], axes: &mut [u8]) {
     axes[middle] = axis as u8;
     let (lower, upper) = items.split_at_mut(middle);
     let (lower_axes, upper_axes) = axes.split_at_mut(middle);
-    split(lower, lower_axes);
-    split(&mut upper[1..], &mut upper_axes[1..]);
+    split(lower, lower_axes, pulse)?;
+    split(&mut upper[1..], &mut upper_axes[1..], pulse)
 }
 
 #[cfg(test)]
@@ -84,6 +87,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::watch::Unwatched;
 
     proptest! {
         #[test]
@@ -99,7 +103,7 @@ mod tests {
             all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             all.truncate(count);
             let mut found = Vec::new();
-            Tree::new(&points).nearest(place, count, &mut found);
+            Tree::new(&points, &Pulse::new(&Unwatched)).unwrap().nearest(place, count, &mut found);
             prop_assert_eq!(found, all);
         }
     }

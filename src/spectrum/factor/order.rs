@@ -1,23 +1,32 @@
 //! The order of elimination.
 
+mod dissect;
+
 use faer::{
     dyn_stack::{MemBuffer, MemStack},
     sparse::{SymbolicSparseColMatRef, linalg::amd},
 };
 
-use crate::laplacian::Symmetric;
+use crate::{
+    laplacian::Symmetric,
+    watch::{Pulse, Stopped},
+};
 
 /// No parent: a root of the elimination forest.
 pub(super) const ROOT: u32 = u32::MAX;
 
-/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree, then a postorder of the
-/// elimination tree in which a column's heaviest child comes last.
+/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree (within the parts of a
+/// [dissection](dissect) where there are many rows), then a postorder of the elimination tree in which a column's
+/// heaviest child comes last.
 ///
 /// Returns `None` when the ordering runs out of memory or of indices.
-pub(in crate::spectrum) fn order(matrix: &Symmetric) -> Option<Vec<u32>> {
+///
+/// # Errors
+/// When the watch cancels.
+pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Vec<u32>>, Stopped> {
     let n = matrix.order();
-    let (offsets, neighbours) = matrix.graph();
-    let mut forward = minimum_degree(n, &offsets, &neighbours)?;
+    let (offsets, neighbours) = matrix.graph(pulse)?;
+    let Some(mut forward) = dissect::order(&offsets, &neighbours, pulse)? else { return Ok(None) };
     let mut inverse = vec![0_u32; n];
     for (new, &old) in forward.iter().enumerate() {
         inverse[old as usize] = new as u32;
@@ -31,11 +40,11 @@ pub(in crate::spectrum) fn order(matrix: &Symmetric) -> Option<Vec<u32>> {
             }
         }
     };
-    let tree = elimination_tree(n, &earlier);
-    let counts = column_counts(n, &tree, &earlier);
-    let post = postorder(&tree, &counts);
+    let tree = elimination_tree(n, &earlier, pulse)?;
+    let counts = column_counts(n, &tree, &earlier, pulse)?;
+    let post = postorder(&tree, &counts, pulse)?;
     forward = post.iter().map(|&at| forward[at as usize]).collect();
-    Some(forward)
+    Ok(Some(forward))
 }
 
 fn minimum_degree(n: usize, offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
@@ -55,10 +64,14 @@ pub(super) trait Earlier: Fn(usize, &mut dyn FnMut(usize)) {}
 impl<F: Fn(usize, &mut dyn FnMut(usize))> Earlier for F {}
 
 /// The parent of every column (Liu 1986).
-pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier) -> Vec<u32> {
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier, pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     let mut parent = vec![ROOT; n];
     let mut ancestor = vec![ROOT; n];
     for column in 0..n {
+        pulse.beat(40)?;
         earlier(column, &mut |row| {
             let mut at = row;
             while ancestor[at] != column as u32 {
@@ -75,32 +88,43 @@ pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier) -> Vec<u32> {
             }
         });
     }
-    parent
+    Ok(parent)
 }
 
 /// The number of entries of every column of the factor, diagonal included, by walking the row subtrees.
-pub(super) fn column_counts(n: usize, parent: &[u32], earlier: &impl Earlier) -> Vec<u32> {
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn column_counts(
+    n: usize,
+    parent: &[u32],
+    earlier: &impl Earlier,
+    pulse: &Pulse,
+) -> Result<Vec<u32>, Stopped> {
     let mut counts = vec![1_u32; n];
     let mut seen = vec![ROOT; n];
     for column in 0..n {
         seen[column] = column as u32;
+        let mut steps = 20;
         earlier(column, &mut |row| {
             let mut at = row;
             while seen[at] != column as u32 {
                 counts[at] += 1;
                 seen[at] = column as u32;
                 at = parent[at] as usize;
+                steps += 3;
             }
         });
+        pulse.beat(steps)?;
     }
-    counts
+    Ok(counts)
 }
 
 /// A postorder of the forest as the list of old indices; the child with the most entries comes last.
-fn postorder(parent: &[u32], counts: &[u32]) -> Vec<u32> {
+fn postorder(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     let n = parent.len();
     let mut by_weight: Vec<u32> = (0..n as u32).collect();
-    by_weight.sort_by_key(|&at| counts[at as usize]);
+    pulse.sort(&mut by_weight, &|&a, &b| counts[a as usize].cmp(&counts[b as usize]).then(a.cmp(&b)))?;
     // Lists of children, heaviest first, because the walk below pushes them on a stack.
     let mut first = vec![ROOT; n];
     let mut next = vec![ROOT; n];
@@ -132,5 +156,5 @@ fn postorder(parent: &[u32], counts: &[u32]) -> Vec<u32> {
             }
         }
     }
-    post
+    Ok(post)
 }

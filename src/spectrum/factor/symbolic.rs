@@ -3,7 +3,10 @@
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 use super::order::{ROOT, column_counts, elimination_tree};
-use crate::laplacian::Symmetric;
+use crate::{
+    laplacian::Symmetric,
+    watch::{Pulse, Stopped},
+};
 
 /// Supernodes, their rows and how their fronts are put together. The matrix must be in the order that
 /// [`order`](super::order::order) gave.
@@ -32,9 +35,13 @@ pub(in crate::spectrum) struct Symbolic {
 }
 
 impl Symbolic {
-    pub(in crate::spectrum) fn new(matrix: &Symmetric) -> Self {
+    /// Analyses.
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(in crate::spectrum) fn new(matrix: &Symmetric, pulse: &Pulse) -> Result<Self, Stopped> {
         let n = matrix.order();
-        let (offsets, neighbours) = matrix.graph();
+        let (offsets, neighbours) = matrix.graph(pulse)?;
         let earlier = |column: usize, visit: &mut dyn FnMut(usize)| {
             for &neighbour in &neighbours[offsets[column]..offsets[column + 1]] {
                 if (neighbour as usize) < column {
@@ -42,11 +49,12 @@ impl Symbolic {
                 }
             }
         };
-        let tree = elimination_tree(n, &earlier);
-        let counts = column_counts(n, &tree, &earlier);
+        let tree = elimination_tree(n, &earlier, pulse)?;
+        let counts = column_counts(n, &tree, &earlier, pulse)?;
         let begin = supernodes(&tree, &counts);
-        let (row_start, rows, parent) = structure(matrix, &begin);
-        Self::finish(matrix, begin, row_start, rows, &parent)
+        pulse.beat(10 * n)?;
+        let (row_start, rows, parent) = structure(matrix, &begin, pulse)?;
+        Self::finish(matrix, begin, row_start, rows, &parent, pulse)
     }
 
     /// Supernodes.
@@ -76,7 +84,14 @@ impl Symbolic {
         (0..self.len()).flat_map(below).map(|below| below * (below + 3) / 2).sum()
     }
 
-    fn finish(matrix: &Symmetric, begin: Vec<u32>, row_start: Vec<usize>, rows: Vec<u32>, parent: &[u32]) -> Self {
+    fn finish(
+        matrix: &Symmetric,
+        begin: Vec<u32>,
+        row_start: Vec<usize>,
+        rows: Vec<u32>,
+        parent: &[u32],
+        pulse: &Pulse,
+    ) -> Result<Self, Stopped> {
         let count = parent.len();
         let mut relative = vec![0_u32; rows.len()];
         let mut children = vec![0_u32; count];
@@ -92,6 +107,7 @@ impl Symbolic {
         }
         for above in 0..count {
             let width = begin[above + 1] - begin[above];
+            pulse.beat(60 * width as usize + 4 * (row_start[above + 1] - row_start[above]))?;
             for column in begin[above]..begin[above + 1] {
                 place[column as usize] = column - begin[above];
             }
@@ -128,7 +144,7 @@ impl Symbolic {
             stack = stack.max(height);
         }
         // While a front is assembled its children still wait, and its own update is pushed after they are gone.
-        Self { begin, row_start, rows, relative, entry, children, first, value_start, front, stack }
+        Ok(Self { begin, row_start, rows, relative, entry, children, first, value_start, front, stack })
     }
 }
 
@@ -180,8 +196,11 @@ fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
     stack.iter().map(|node| node.begin as u32).chain([n as u32]).collect()
 }
 
+/// Where the rows below every supernode begin, these rows, and every supernode's parent.
+type Structure = (Vec<usize>, Vec<u32>, Vec<u32>);
+
 /// The rows below every supernode, and its parent.
-fn structure(matrix: &Symmetric, begin: &[u32]) -> (Vec<usize>, Vec<u32>, Vec<u32>) {
+fn structure(matrix: &Symmetric, begin: &[u32], pulse: &Pulse) -> Result<Structure, Stopped> {
     let n = matrix.order();
     let count = begin.len() - 1;
     let mut owner = vec![0_u32; n];
@@ -209,6 +228,7 @@ fn structure(matrix: &Symmetric, begin: &[u32]) -> (Vec<usize>, Vec<u32>, Vec<u3
             let range = row_start[child as usize]..row_start[child as usize + 1];
             rows[range].iter().for_each(|&row| add(row));
         }
+        pulse.beat(40 * list.len() + 40)?;
         list.sort_unstable();
         if let Some(&first) = list.first() {
             parent[at] = owner[first as usize];
@@ -217,5 +237,5 @@ fn structure(matrix: &Symmetric, begin: &[u32]) -> (Vec<usize>, Vec<u32>, Vec<u3
         rows.extend_from_slice(&list);
         row_start[at + 1] = rows.len();
     }
-    (row_start, rows, parent)
+    Ok((row_start, rows, parent))
 }

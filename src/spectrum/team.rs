@@ -1,0 +1,374 @@
+//! Several threads at one mesh: the owner of the solve, and others that help.
+//!
+//! The shifts of a chain are placed one after the other, which takes a factorisation each; the processes at them are
+//! ten times dearer, and run at once. What is made of them is joined in the order of the chain, so that every band is
+//! the same bits as on one thread. Which bands belong to the answer is decided by the rule that one thread follows;
+//! what was solved beyond them is dropped.
+
+use std::{
+    collections::VecDeque,
+    sync::{
+        Condvar, Mutex, MutexGuard, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Duration,
+};
+
+use super::{
+    SpectrumError,
+    band::Band,
+    part::{End, Piece, Shift, Tools},
+    poll::Poll,
+    slice::{Side, Sides},
+    timings::Timings,
+};
+use crate::watch::Watch;
+
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+/// How long a thread without work waits before it looks around again.
+const NAP: Duration = Duration::from_millis(2);
+
+/// One solve, for all threads that work at it.
+#[derive(Debug)]
+pub(super) struct Team {
+    pieces: Vec<Piece>,
+    /// All eigenvalues of the small pieces.
+    small: Option<Band>,
+    /// How many eigenvalues are wanted.
+    count: usize,
+    state: Mutex<State>,
+    changed: Condvar,
+    /// Nothing is wanted any more.
+    over: AtomicBool,
+}
+
+#[derive(Debug)]
+struct State {
+    /// By piece.
+    chains: Vec<Chain>,
+    /// Numbers slots.
+    next: u64,
+    helpers: usize,
+    /// What helpers have spent.
+    timings: Timings,
+}
+
+/// The chain of one piece.
+#[derive(Debug)]
+struct Chain {
+    /// Finished bands, in order.
+    bands: Vec<Band>,
+    /// How many of them belong to the answer, as far as is known.
+    needed: usize,
+    /// The right side of the last band's upper shift, where it is known.
+    right: Option<Side>,
+    /// The shifts above, in order.
+    slots: VecDeque<Slot>,
+    /// A thread is placing the next shift.
+    placing: bool,
+    /// Where the next shift is to be tried, after it had to move.
+    again: Option<(f64, u32)>,
+    /// Where the chain ends for want of a certificate.
+    failed: Option<f64>,
+}
+
+/// A process.
+#[derive(Debug)]
+struct Slot {
+    number: u64,
+    at: Place,
+    stage: Stage,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Place {
+    /// A shift of the chain.
+    Shift(Shift),
+    /// The last shift of the known bands, once more for its right side.
+    Again,
+    /// There is no shift.
+    Nowhere,
+}
+
+#[derive(Debug)]
+enum Stage {
+    /// For any thread to run.
+    Open,
+    Running,
+    Done(Sides),
+    /// Its band is being made.
+    Making,
+    Failed(f64),
+}
+
+/// What a thread does next.
+enum Work {
+    /// Place a shift at the end of a chain, then run its process.
+    Place(usize, End, Option<(f64, u32)>),
+    /// Run the process of a slot.
+    Run(usize, u64, Place),
+    /// Make the next band of what the processes at its ends saw.
+    Make(usize, Place, Sides, Side),
+}
+
+/// How a solve stands.
+enum Standing {
+    Going,
+    Done,
+    Failed(f64),
+}
+
+impl Chain {
+    fn counted(&self) -> usize {
+        self.bands.last().map_or(0, |band| band.above)
+    }
+
+    /// Where the last placed shift is, and how many eigenvalues are below it.
+    fn placed(&self, unit: f64) -> (f64, usize) {
+        let last = self.slots.iter().rev().find_map(|slot| match slot.at {
+            Place::Shift(shift) => Some((shift.upper * unit, shift.above)),
+            Place::Again | Place::Nowhere => None,
+        });
+        last.unwrap_or_else(|| (self.bands.last().map_or(0.0, |band| band.upper), self.counted()))
+    }
+
+    fn take(&mut self, number: u64) -> Option<usize> {
+        self.slots.iter().position(|slot| slot.number == number)
+    }
+}
+
+impl Team {
+    /// A solve of these pieces; `known` are bands that need not be solved again.
+    pub(super) fn new(pieces: Vec<Piece>, small: Option<Band>, count: usize, known: &[Band]) -> Self {
+        let chains = pieces
+            .iter()
+            .map(|piece| {
+                let bands = piece.taken_over(known);
+                let needed = bands.len();
+                Chain { bands, needed, right: None, slots: VecDeque::new(), placing: false, again: None, failed: None }
+            })
+            .collect();
+        let state = State { chains, next: 0, helpers: 0, timings: Timings::default() };
+        let (changed, over) = (Condvar::new(), AtomicBool::new(false));
+        Self { pieces, small, count, state: Mutex::new(state), changed, over }
+    }
+
+    /// How many pieces have a kernel.
+    pub(super) fn kernels(&self) -> usize {
+        self.pieces.iter().filter(|piece| piece.pencil.kernel).count()
+    }
+
+    /// How many eigenvalues are certified, once the bands of the answer are there. `tell` learns of progress: how many
+    /// are certified so far, and all bands of the answer when there is a new one.
+    ///
+    /// # Errors
+    /// When the watch cancels, or when the certificate cannot be had.
+    pub(super) fn lead(
+        &self,
+        tools: &mut Tools,
+        poll: &mut Poll,
+        watch: &dyn Watch,
+        keep: &dyn Fn(&[Band]),
+    ) -> Result<Vec<Band>, SpectrumError> {
+        let over = Over(self);
+        let mut kept = usize::MAX;
+        let outcome = loop {
+            let mut state = self.state();
+            let (standing, done) = self.judge(&mut state);
+            let bands = state.chains.iter().map(|chain| chain.bands.len()).sum();
+            if kept != bands {
+                let all = (kept != usize::MAX).then(|| self.bands(&state, |chain| chain.bands.len()));
+                kept = bands;
+                drop(state);
+                watch.progress(done.min(self.count), self.count);
+                if let Some(all) = all {
+                    keep(&all);
+                }
+                state = self.state();
+            }
+            match standing {
+                Standing::Going => {}
+                Standing::Done => break Ok(self.bands(&state, |chain| chain.needed)),
+                Standing::Failed(at) => {
+                    let finished = self.bands(&state, |chain| chain.bands.len());
+                    break Err(SpectrumError::Uncertified { at, finished });
+                }
+            }
+            let cancelled = if let Some(work) = self.next(&mut state) {
+                drop(state);
+                self.work(work, tools, poll).is_err()
+            } else {
+                drop(self.changed.wait_timeout(state, NAP).unwrap_or_else(PoisonError::into_inner));
+                watch.cancelled()
+            };
+            if cancelled {
+                let state = self.state();
+                break Err(SpectrumError::Cancelled { finished: self.bands(&state, |chain| chain.bands.len()) });
+            }
+        };
+        drop(over);
+        poll.meter.timings.add(&self.state().timings);
+        outcome
+    }
+
+    /// Helps until there is nothing to do at the moment, or the helper is wanted elsewhere. Returns whether it did
+    /// anything.
+    pub(super) fn help(&self, tools: &mut Tools, leave: &dyn Watch) -> bool {
+        struct Both<'a>(&'a AtomicBool, &'a dyn Watch);
+        impl Watch for Both<'_> {
+            fn cancelled(&self) -> bool {
+                self.0.load(Ordering::Relaxed) || self.1.cancelled()
+            }
+        }
+        let watch = Both(&self.over, leave);
+        let mut helped = false;
+        self.state().helpers += 1;
+        while !watch.cancelled() {
+            let mut state = self.state();
+            let Some(work) = self.next(&mut state) else { break };
+            drop(state);
+            helped = true;
+            let mut poll = Poll::new(&watch);
+            let outcome = self.work(work, tools, &mut poll);
+            self.state().timings.add(&poll.meter.timings);
+            if outcome.is_err() {
+                break;
+            }
+        }
+        self.state().helpers -= 1;
+        helped
+    }
+
+    /// How many help.
+    pub(super) fn helpers(&self) -> usize {
+        self.state().helpers
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn unit(&self) -> f64 {
+        self.pieces.first().map_or(1.0, |piece| piece.unit)
+    }
+
+    /// Bands of the answer so far: of the small pieces, and those that a chain has up to here.
+    fn bands(&self, state: &State, count: impl Fn(&Chain) -> usize) -> Vec<Band> {
+        self.small.iter().chain(state.chains.iter().flat_map(|chain| &chain.bands[..count(chain)])).cloned().collect()
+    }
+
+    /// Follows the rule that one thread follows, as far as there are bands: while too few eigenvalues are certified,
+    /// that chain goes on which has come least far. Returns how many are certified.
+    fn judge(&self, state: &mut State) -> (Standing, usize) {
+        loop {
+            // Below what is known of every piece that is not finished.
+            let ends = state.chains.iter().zip(&self.pieces).enumerate().filter_map(|(at, (chain, piece))| {
+                let last = chain.needed.checked_sub(1).map(|last| &chain.bands[last]);
+                let finished = last.is_some_and(|last| last.above == piece.pencil.order());
+                (!finished).then(|| (last.map_or(0.0, |last| last.upper), at))
+            });
+            let lowest = ends.min_by(|a, b| a.0.total_cmp(&b.0));
+            let limit = lowest.map_or(f64::MAX, |lowest| lowest.0);
+            let bands = state.chains.iter().flat_map(|chain| &chain.bands[..chain.needed]).chain(&self.small);
+            let below = bands.map(|band| {
+                if band.upper <= limit {
+                    band.values.len()
+                } else {
+                    band.values.partition_point(|&value| value <= limit)
+                }
+            });
+            let done = below.sum::<usize>();
+            let Some((_, at)) = lowest.filter(|_| done < self.count) else { return (Standing::Done, done) };
+            let chain = &mut state.chains[at];
+            if chain.bands.len() > chain.needed {
+                chain.needed += 1;
+            } else if let Some(failed) = chain.failed {
+                return (Standing::Failed(failed), done);
+            } else {
+                return (Standing::Going, done);
+            }
+        }
+    }
+
+    /// What there is to do now, and notes that it is being done.
+    fn next(&self, state: &mut State) -> Option<Work> {
+        for (at, chain) in state.chains.iter_mut().enumerate() {
+            if let Some(slot) = chain.slots.front_mut() {
+                match std::mem::replace(&mut slot.stage, Stage::Making) {
+                    Stage::Done(sides) => {
+                        return Some(Work::Make(at, slot.at, sides, chain.right.take().unwrap_or_default()));
+                    }
+                    Stage::Failed(failed) => {
+                        chain.failed = Some(failed);
+                        chain.slots.clear();
+                        continue;
+                    }
+                    other => slot.stage = other,
+                }
+            }
+            if let Some(slot) = chain.slots.iter_mut().find(|slot| matches!(slot.stage, Stage::Open)) {
+                slot.stage = Stage::Running;
+                return Some(Work::Run(at, slot.number, slot.at));
+            }
+        }
+        self.next_shift(state)
+    }
+
+    /// The chain that has come least far goes on, if its bands will be needed.
+    fn next_shift(&self, state: &mut State) -> Option<Work> {
+        let placed: Vec<(f64, usize)> = state.chains.iter().map(|chain| chain.placed(self.unit())).collect();
+        let (at, limit) = (0..placed.len())
+            .filter(|&at| placed[at].1 < self.pieces[at].pencil.order())
+            .map(|at| (at, placed[at].0))
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
+        if state.chains[at].failed.is_some() || state.chains[at].placing || self.expected(state, limit) >= self.count {
+            return None;
+        }
+        let State { chains, next, .. } = state;
+        let chain = &mut chains[at];
+        let slots_end = chain.slots.back().map(|slot| slot.at);
+        let end = match slots_end {
+            Some(Place::Shift(shift)) => shift.end(),
+            Some(Place::Nowhere) => return None,
+            None if chain.right.is_none() && !chain.bands.is_empty() => {
+                *next += 1;
+                chain.slots.push_back(Slot { number: *next, at: Place::Again, stage: Stage::Running });
+                return Some(Work::Run(at, *next, Place::Again));
+            }
+            Some(Place::Again) | None => self.pieces[at].end(&chain.bands),
+        };
+        chain.placing = true;
+        Some(Work::Place(at, end, chain.again.take()))
+    }
+
+    /// How many eigenvalues up to here will be certified by the shifts that were placed.
+    fn expected(&self, state: &State, limit: f64) -> usize {
+        let mut sum = 0.0;
+        for (chain, piece) in state.chains.iter().zip(&self.pieces) {
+            for band in &chain.bands {
+                sum += band.values.partition_point(|&value| value <= limit) as f64;
+            }
+            for slot in &chain.slots {
+                let Place::Shift(shift) = slot.at else { continue };
+                let (lower, upper, count) = shift.span();
+                let share = ((limit / piece.unit - lower) / (upper - lower)).clamp(0.0, 1.0);
+                sum += share * count as f64;
+            }
+        }
+        let small = self.small.iter().map(|band| band.values.partition_point(|&value| value <= limit)).sum::<usize>();
+        sum as usize + small
+    }
+}
+
+/// Sends the helpers away.
+struct Over<'a>(&'a Team);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.over.store(true, Ordering::Relaxed);
+    }
+}
