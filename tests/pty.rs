@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used)] // Helpers of tests are tests.
 
+#[path = "pty/questions.rs"]
+mod questions;
 #[path = "pty/seat.rs"]
 mod seat;
 
@@ -189,6 +191,7 @@ fn ctrl_z_gives_the_terminal_to_the_shell_and_fg_takes_it_again() {
     let cache = folder("suspended");
     let mut seat = Seat::at(shell, 80, 24);
     seat.until_shown("ready> ");
+    let settings = seat.settings();
     let tui = format!("'{}' '{}' --cache '{}'\n", env!("CARGO_BIN_EXE_tui"), seat::small(), cache.display());
     seat.press(&tui);
     seat.until("screen", vt100::Screen::alternate_screen);
@@ -197,12 +200,14 @@ fn ctrl_z_gives_the_terminal_to_the_shell_and_fg_takes_it_again() {
     seat.until("shell", |screen| !screen.alternate_screen() && !screen.hide_cursor());
     seat.press("echo sto''pped\n");
     seat.until_shown("stopped");
+    assert_eq!(seat.settings(), settings, "the shell has its terminal back as it was");
     seat.press("fg\n");
     seat.until("screen again", |screen| screen.alternate_screen() && screen.contents().contains("2 Curves"));
     seat.press("q");
     seat.until("shell again", |screen| !screen.alternate_screen());
     seat.press("echo en''ded $?\n");
     seat.until_shown("ended 0");
+    assert_eq!(seat.settings(), settings);
     seat.press("exit\n");
     seat.end();
 }
@@ -306,7 +311,7 @@ fn a_storm_of_sizes_and_keys_does_no_harm() {
         number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (number >> 33) % end
     };
-    for turn in 0..4000 {
+    for turn in 0..10_000 {
         seat.press(KEYS[below(KEYS.len() as u64) as usize]);
         if turn % 40 == 0 {
             let (columns, rows) = (1 + below(160) as u16, 1 + below(60) as u16);
@@ -332,6 +337,51 @@ fn no_such_folder_is_said_on_the_shells_screen() {
     let mut seat = Seat::at_tui(&["no-such-folder"]);
     assert_eq!(seat.end().exit_code(), 1);
     seat.until_shown("no-such-folder: no such folder");
+    seat.assert_restored();
+}
+
+#[test]
+fn files_with_hostile_names_do_nothing_to_the_terminal() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let data = folder("hostile").join("shapes");
+    let names: [&[u8]; 6] = [
+        b"\x1b[2J\x1b]0;owned\x07\x1b[31m",
+        b"\xff\xfe not utf-8",
+        "שלום \u{202e}fdp".as_bytes(),
+        "🐘👩‍👩‍👧 象".as_bytes(),
+        &[b'x'; 240],
+        b"a\r\nb\tc\x08\x9b31m",
+    ];
+    let inside = |folder: &std::path::Path| {
+        let mut entries: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        entries.sort();
+        entries
+    };
+    let splits = inside(seat::small().as_ref()).into_iter().filter(|split| split.is_dir());
+    for split in splits {
+        for (place, class) in inside(&split).iter().enumerate() {
+            let own = data.join(split.file_name().unwrap()).join(std::ffi::OsStr::from_bytes(names[place]));
+            std::fs::create_dir_all(&own).unwrap();
+            for (model, file) in inside(class).iter().enumerate() {
+                let ending = file.extension().unwrap().as_bytes();
+                let name = [names[(place + model) % names.len()], b".", ending].concat();
+                std::fs::copy(file, own.join(std::ffi::OsStr::from_bytes(&name))).unwrap();
+            }
+        }
+    }
+    let cache = folder("hostile-cache");
+    let mut seat = Seat::at_tui(&[data.to_str().unwrap(), "--cache", cache.to_str().unwrap(), "--set", "kmax=30"]);
+    seat.until_settled();
+    for key in ["2", "3", "4", "5", "6", "7", ".", "\r", "\r", "8", "9", "0", ":mod", "\x1b", "?", "\x1b"] {
+        seat.press(key);
+        thread::sleep(Duration::from_millis(100));
+    }
+    seat.press("6");
+    seat.until_shown("of 12");
+    assert!(!seat.wrote(b"\x1b]0;"), "no name sets the title");
+    assert!(!seat.wrote(b"\x1b[31m\x1b") && !seat.wrote("\u{202e}".as_bytes()) && !seat.wrote(b"\x9b31m."));
+    seat.press("q");
+    assert_eq!(seat.end().exit_code(), 0);
     seat.assert_restored();
 }
 

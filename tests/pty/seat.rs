@@ -28,6 +28,7 @@ pub struct Seat {
     child: Box<dyn Child + Send + Sync>,
     eyes: Arc<Mutex<Parser>>,
     bytes: Arc<AtomicUsize>,
+    written: Arc<Mutex<Vec<u8>>>,
     before: String,
 }
 
@@ -60,15 +61,17 @@ impl Seat {
         let mut light = pair.master.try_clone_reader().unwrap();
         let eyes = Arc::new(Mutex::new(Parser::new(cells(rows), cells(columns), 0)));
         let bytes = Arc::new(AtomicUsize::new(0));
-        let (seeing, counting) = (Arc::clone(&eyes), Arc::clone(&bytes));
+        let written: Arc<Mutex<Vec<u8>>> = Arc::default();
+        let (seeing, counting, keeping) = (Arc::clone(&eyes), Arc::clone(&bytes), Arc::clone(&written));
         thread::spawn(move || {
             let mut buffer = [0; 1 << 12];
             while let Ok(count @ 1..) = light.read(&mut buffer) {
                 seeing.lock().unwrap().process(&buffer[..count]);
+                keeping.lock().unwrap().extend_from_slice(&buffer[..count]);
                 counting.fetch_add(count, Ordering::SeqCst);
             }
         });
-        Self { master: pair.master, keyboard, child, eyes, bytes, before }
+        Self { master: pair.master, keyboard, child, eyes, bytes, written, before }
     }
 
     /// Presses keys, given as the bytes that a terminal sends for them.
@@ -116,6 +119,16 @@ impl Seat {
     /// Bytes that the program has written.
     pub fn bytes(&self) -> usize {
         self.bytes.load(Ordering::SeqCst)
+    }
+
+    /// True when the program has written these bytes in a row at any time.
+    pub fn wrote(&self, bytes: &[u8]) -> bool {
+        self.written.lock().unwrap().windows(bytes.len()).any(|window| window == bytes)
+    }
+
+    /// The terminal's settings now.
+    pub fn settings(&self) -> String {
+        modes(&*self.master)
     }
 
     /// Makes the window another size.
