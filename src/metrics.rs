@@ -45,6 +45,7 @@ mod sample;
 #[cfg(test)]
 pub(crate) mod samples;
 mod scale;
+mod shortlist;
 mod sweep;
 
 /// The computation was told that its result is no longer wanted.

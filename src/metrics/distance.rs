@@ -68,6 +68,8 @@ impl Distance {
 pub(crate) trait Term: Copy + Send + Sync {
     /// Whether the term of one feature grows, or stays, as one walks away from a value to either side.
     const GROWS: bool = true;
+    /// Whether that holds of what is computed, too, in spite of rounding.
+    const GROWS_EXACTLY: bool = false;
 
     /// The term of the values `a` and `b`.
     fn term(a: f64, b: f64) -> f64;
@@ -88,6 +90,9 @@ pub(crate) struct Wesd15;
 pub(crate) struct Wesd2;
 
 impl Term for L2 {
+    // Differences are rounded in their order, and so are their squares.
+    const GROWS_EXACTLY: bool = true;
+
     #[inline(always)]
     fn term(a: f64, b: f64) -> f64 {
         (a - b) * (a - b)
@@ -101,6 +106,8 @@ impl Term for L2 {
 }
 
 impl Term for L1 {
+    const GROWS_EXACTLY: bool = true;
+
     #[inline(always)]
     fn term(a: f64, b: f64) -> f64 {
         (a - b).abs()

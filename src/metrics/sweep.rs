@@ -1,14 +1,17 @@
 //! ε and mean ADR of the first k features, for every k in one pass.
 
-use std::marker::PhantomData;
+use std::{marker::PhantomData, ops::Range};
 
+use pulp::Simd;
 use rayon::prelude::*;
 
-use super::{Cancelled, Columns, Distance, Exam, Nearest, Term, by_distance};
+use super::{Cancelled, Columns, Distance, Exam, Recall, Term, by_distance, shortlist::Shortlist};
 use crate::watch::Watch;
 
 /// Columns between two looks at the watch.
-const POLL: usize = 64;
+const POLL: usize = 32;
+/// Models asked side by side: a column is then read from afar for all of them at once.
+const GROUP: usize = 8;
 
 /// ε and mean ADR for every k = 1…kmax; entry k − 1 belongs to k.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,21 +44,26 @@ fn sweep_by<T: Term>(exam: Exam<'_>, watch: &dyn Watch) -> Result<Sweep, Cancell
     let columns = Columns::new(exam.models());
     let (relevant, recall) = (exam.relevant(), exam.recall());
     let nothing = || Tally { wrong: vec![0; columns.len()], recall: vec![0; columns.len()] };
-    let start = || (nothing(), Nearest::new(exam.models().rows(), columns.stride()));
-    let tally = (0..exam.len())
+    let start = || (nothing(), vec![Shortlist::new(columns.stride()); GROUP]);
+    let tally = (0..exam.len().div_ceil(GROUP))
         .into_par_iter()
-        .try_fold(start, |(mut tally, mut nearest), asked| {
+        .try_fold(start, |(mut tally, mut shortlists), group| {
+            let asked = group * GROUP..exam.len().min((group + 1) * GROUP);
+            for (asked, shortlist) in asked.clone().zip(&mut shortlists) {
+                shortlist.begin(exam.models().rows(), exam.left_out(asked), relevant[asked].max(1));
+            }
             pulp::Arch::new().dispatch(Ask::<T> {
                 exam,
                 asked,
-                weights: recall.weights(relevant[asked]),
+                relevant: &relevant,
+                recall: &recall,
                 columns: &columns,
                 watch,
-                nearest: &mut nearest,
+                shortlists: &mut shortlists,
                 tally: &mut tally,
                 term: PhantomData,
             })?;
-            Ok((tally, nearest))
+            Ok((tally, shortlists))
         })
         .map(|part| part.map(|(tally, _)| tally))
         .try_reduce(nothing, |mut a, b| {
@@ -69,39 +77,52 @@ fn sweep_by<T: Term>(exam: Exam<'_>, watch: &dyn Watch) -> Result<Sweep, Cancell
     })
 }
 
-/// Adds the figures of one asked model to the tally.
+/// Adds the figures of some asked models to the tally.
 struct Ask<'a, T> {
     exam: Exam<'a>,
-    asked: usize,
-    weights: &'a [u128],
+    asked: Range<usize>,
+    relevant: &'a [usize],
+    recall: &'a Recall,
     columns: &'a Columns,
     watch: &'a dyn Watch,
-    nearest: &'a mut Nearest,
+    shortlists: &'a mut [Shortlist],
     tally: &'a mut Tally,
     term: PhantomData<T>,
 }
 
-impl<T: Term> pulp::NullaryFnOnce for Ask<'_, T> {
+impl<T: Term> pulp::WithSimd for Ask<'_, T> {
     type Output = Result<(), Cancelled>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
-        let Self { exam, asked, weights, columns, watch, nearest, tally, .. } = self;
-        let (row, label, labels) = (exam.row(asked), exam.label(asked), exam.labels());
-        nearest.begin(exam.left_out(asked));
-        nearest.seed(weights.len().max(1), []);
-        for (k, &value) in row.iter().enumerate().take(columns.len()) {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { exam, asked, relevant, recall, columns, watch, shortlists, tally, .. } = self;
+        let labels = exam.labels();
+        for k in 0..columns.len() {
             if k % POLL == 0 && watch.cancelled() {
                 return Err(Cancelled);
             }
-            for (sum, &other) in nearest.sums.iter_mut().zip(columns.col(k)) {
-                *sum += T::term(value, other);
+            let (others, _) = S::as_simd_f64s(columns.col(k));
+            for (asked, shortlist) in asked.clone().zip(&mut *shortlists) {
+                let value = simd.splat_f64s(exam.row(asked)[k]);
+                let (sums, _) = S::as_mut_simd_f64s(&mut shortlist.sums);
+                for (sum, &other) in sums.iter_mut().zip(others) {
+                    *sum = simd.add_f64s(*sum, T::terms(simd, value, other));
+                }
+                let (label, weights) = (exam.label(asked), recall.weights(relevant[asked]));
+                let (mut wrong, mut gained) = (1, 0);
+                shortlist.find(
+                    simd,
+                    #[inline(always)]
+                    |model| labels[model as usize] == label,
+                    #[inline(always)]
+                    |rank| {
+                        wrong &= u32::from(rank > 0);
+                        gained += weights.get(rank).copied().unwrap_or(0);
+                    },
+                );
+                tally.wrong[k] += wrong;
+                tally.recall[k] += gained;
             }
-            let top = nearest.update();
-            let right = top.first().is_some_and(|&(_, model)| labels[model as usize] == label);
-            tally.wrong[k] += u32::from(!right);
-            let found = top.iter().zip(weights).filter(|((_, model), _)| labels[*model as usize] == label);
-            tally.recall[k] += found.map(|(_, &weight)| weight).sum::<u128>();
         }
         Ok(())
     }

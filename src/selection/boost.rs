@@ -26,8 +26,8 @@ pub const LEAST_ERROR: f64 = 1e-10;
 /// that errors that are equal in exact arithmetic may differ a little; those that are not equal differ by much more.
 pub const TIE: f64 = 1e-12;
 
-/// Negatives whose weights are summed by one look-up.
-const BITS: usize = 4;
+/// Negatives whose weights are summed by one look-up: as many as a byte has bits.
+const BITS: usize = 8;
 
 /// Runs `rounds` rounds for every class.
 ///
@@ -98,55 +98,55 @@ struct Negatives {
     positive: f64,
     /// Weights of the negatives, padded with zeros to a multiple of [`BITS`].
     weights: Vec<f64>,
-    /// For every feature and every group of [`BITS`] negatives, a bit for each that lies within the positives' range.
+    /// For every group of [`BITS`] negatives and every feature, a bit for each that lies within the positives' range.
     within: Vec<u8>,
 }
 
 impl Negatives {
     fn new(sample: &Sample, ranges: &Ranges, class: usize) -> Self {
-        let others = || (0..sample.train.rows()).filter(|&model| sample.train_labels[model] as usize != class);
-        let count = others().count();
-        let groups = count.div_ceil(BITS);
-        let mut within = vec![0; groups * sample.train.cols()];
+        let others: Vec<usize> =
+            (0..sample.train.rows()).filter(|&model| sample.train_labels[model] as usize != class).collect();
+        let cols = sample.train.cols();
+        let groups = others.len().div_ceil(BITS);
+        let mut within = vec![0; groups * cols];
         let (low, high) = ranges.class(class);
-        for (at, model) in others().enumerate() {
-            let (group, bit) = (at / BITS, 1 << (at % BITS));
-            for (col, &value) in sample.train.row(model).iter().enumerate() {
-                if low[col] <= value && value <= high[col] {
-                    within[col * groups + group] |= bit;
-                }
+        for (at, &model) in others.iter().enumerate() {
+            let (group, bit) = (at / BITS, at % BITS);
+            let bits = within[group * cols..(group + 1) * cols].iter_mut();
+            for (((bits, value), low), high) in bits.zip(sample.train.row(model)).zip(low).zip(high) {
+                *bits |= u8::from((low..=high).contains(&value)) << bit;
             }
         }
         let mut weights = vec![0.0; groups * BITS];
-        weights[..count].fill(0.5 / count as f64);
-        Self { cols: sample.train.cols(), positive: 0.5, weights, within }
+        weights[..others.len()].fill(0.5 / others.len() as f64);
+        Self { cols, positive: 0.5, weights, within }
     }
 
-    const fn groups(&self) -> usize {
-        self.weights.len() / BITS
-    }
-
-    /// The weighted error of every feature's weak classifier.
+    /// The weighted error of every feature's weak classifier. Without negatives none errs.
     fn errors(&self) -> Vec<f64> {
-        // sums[group][bits]: the weight of those negatives of the group whose bits are set.
-        let mut sums = vec![[0.0; 1 << BITS]; self.groups()];
-        for (sums, weights) in sums.iter_mut().zip(self.weights.chunks_exact(BITS)) {
-            for bits in 1_usize..1 << BITS {
-                let first = bits.trailing_zeros() as usize;
-                sums[bits] = weights[first] + sums[bits & (bits - 1)];
+        let mut errors = vec![0.0; self.cols];
+        if self.cols == 0 {
+            return errors;
+        }
+        for (within, weights) in self.within.chunks_exact(self.cols).zip(self.weights.chunks_exact(BITS)) {
+            // The weight of those negatives of the group whose bits are set.
+            let mut sums = [0.0; 1 << BITS];
+            for (bit, weight) in weights.iter().enumerate() {
+                let (known, next) = sums.split_at_mut(1 << bit);
+                next.iter_mut().zip(known).for_each(|(next, known)| *next = *known + weight);
+            }
+            for (error, &bits) in errors.iter_mut().zip(within) {
+                *error += sums[bits as usize];
             }
         }
-        let error = |within: &[u8]| within.iter().zip(&sums).map(|(&bits, sums)| sums[bits as usize]).sum();
-        // Without negatives no classifier errs.
-        if sums.is_empty() { vec![0.0; self.cols] } else { self.within.chunks_exact(sums.len()).map(error).collect() }
+        errors
     }
 
     /// Gives weight to what the round got wrong: w ← w·exp(−α·h·y)/Z. False when it got nothing wrong, which leaves
     /// the weights as they were.
     fn update(&mut self, round: &Round) -> bool {
         let col = round.index as usize - 1;
-        let groups = self.groups();
-        let within = &self.within[col * groups..(col + 1) * groups];
+        let within: Vec<u8> = self.within.iter().skip(col).step_by(self.cols).copied().collect();
         if within.iter().all(|&bits| bits == 0) {
             return false;
         }

@@ -18,12 +18,15 @@ use crate::{
     watch::Watch,
 };
 
+mod ask;
 mod block;
 mod ground;
 mod judge;
 mod line;
 mod race;
+mod row;
 mod search;
+mod sketch;
 
 /// What hill climbing minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]

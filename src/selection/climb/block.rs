@@ -10,7 +10,7 @@
 
 use pulp::Simd;
 
-use super::{Cost, ground::Row, judge::Judge};
+use super::{Cost, judge::Judge, row::Row};
 use crate::metrics::{Columns, Term};
 
 /// Of a stranger and a relative at equal distance, the relative comes first.
@@ -87,19 +87,21 @@ impl<S: Simd> Block<S> {
         let reach = simd.reduce_max_f64s(nearest);
         // Without relatives or strangers nothing right is there to be found.
         let mut right = simd.less_than_f64s(nearest, simd.splat_f64s(f64::INFINITY));
-        let mut sure = depth >= row.strangers.len();
-        for &stranger in row.strangers.iter().take(depth) {
-            if stranger.0 > reach || none::<S>(simd, right) {
+        let mut sure = depth >= row.strangers();
+        for (from, chunk) in row.chunks(1).take(depth) {
+            if from > reach || none::<S>(simd, right) {
                 sure = true;
                 break;
             }
-            let sums = self.sums::<T>(simd, asked, stranger);
-            let behind = if TIES == LEAST {
-                simd.less_than_or_equal_f64s(nearest, sums)
-            } else {
-                simd.less_than_f64s(nearest, sums)
-            };
-            right = simd.and_m64s(right, behind);
+            for &stranger in chunk {
+                let sums = self.sums::<T>(simd, asked, stranger);
+                let behind = if TIES == LEAST {
+                    simd.less_than_or_equal_f64s(nearest, sums)
+                } else {
+                    simd.less_than_f64s(nearest, sums)
+                };
+                right = simd.and_m64s(right, behind);
+            }
         }
         let wrong = [simd.select_u64s(right, simd.splat_u64s(0), simd.splat_u64s(1))];
         let mut losses = [0; LANES];
@@ -154,11 +156,12 @@ impl<S: Simd> Block<S> {
         self.before.resize(count, simd.splat_u64s(0));
         // The relatives before `first` are nearer than any stranger left.
         let (mut first, mut live) = (0, count);
-        for (nth, chunk) in row.strangers.chunks(CHUNK).enumerate() {
+        for (nth, (from, chunk)) in row.chunks(CHUNK).enumerate() {
             while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
                 live -= 1;
             }
-            while first < live && simd.reduce_max_f64s(self.relatives[first]) < chunk[0].0 {
+            let near = simd.splat_f64s(from);
+            while first < live && none::<S>(simd, simd.greater_than_or_equal_f64s(self.relatives[first], near)) {
                 first += 1;
             }
             if first == live {

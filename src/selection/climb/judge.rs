@@ -1,6 +1,8 @@
 //! Costs as integers.
 
-use super::{Cost, block::network};
+use std::ops::Range;
+
+use super::{Cost, block::network, sketch::RANKS};
 use crate::metrics::{Exam, Recall, Sample};
 
 /// What the nearest models of a model asked cost: 1 for the wrong class, or what its ADR lacks of 1 in the exact units
@@ -11,12 +13,20 @@ pub(super) struct Judge<'a> {
     recall: Recall,
     /// By class: its training models.
     members: Vec<Vec<u32>>,
+    /// By class: how many training models those before it have.
+    starts: Vec<u32>,
     /// By class: what sorts its members but one.
     networks: Vec<Vec<(u32, u32)>>,
     /// By class: the weights of ranks in units, rounded up.
     credits: Vec<Vec<u64>>,
     unit: u128,
+    /// By class: the same in rough units, with what follows the last rank.
+    rough: Vec<[u32; RANKS]>,
+    rough_unit: u128,
 }
+
+/// Into so many units at most is an ADR of 1 cut where losses are rough.
+const ROUGH: u128 = 1 << 24;
 
 impl<'a> Judge<'a> {
     pub(super) fn new(sample: &'a Sample, cost: Cost) -> Self {
@@ -25,6 +35,12 @@ impl<'a> Judge<'a> {
         for (model, &label) in (0..).zip(&sample.train_labels) {
             members[label as usize].push(model);
         }
+        let starts = members.iter().scan(0, |next, members| {
+            let start = *next;
+            *next += members.len() as u32;
+            Some(start)
+        });
+        let starts = starts.collect();
         let networks = members.iter().map(|members| network(members.len().saturating_sub(1))).collect();
         let recall = exam.recall();
         let unit = recall.full().div_ceil(1 << 62).max(1);
@@ -33,7 +49,71 @@ impl<'a> Judge<'a> {
             count => recall.weights(count - 1).iter().map(|weight| weight.div_ceil(unit) as u64).collect(),
         };
         let credits = members.iter().map(credits).collect();
-        Self { cost, exam, recall, members, networks, credits, unit }
+        let rough_unit = match cost {
+            Cost::Error => 1,
+            Cost::Adr => recall.scale().div_ceil(ROUGH).max(1),
+        };
+        let rough = |members: &Vec<u32>| {
+            let mut credits = [0; RANKS];
+            if cost == Cost::Error {
+                credits[0] = 1;
+            } else if members.len() > 1 {
+                for (credit, weight) in credits.iter_mut().zip(recall.weights(members.len() - 1)) {
+                    *credit = weight.div_ceil(rough_unit) as u32;
+                }
+            }
+            credits
+        };
+        let rough = members.iter().map(rough).collect();
+        Self { cost, exam, recall, members, starts, networks, credits, unit, rough, rough_unit }
+    }
+
+    /// The losses of a [`Sketch`](super::sketch::Sketch) are in these units, rounded down.
+    pub(super) const fn rough_unit(&self) -> u128 {
+        self.rough_unit
+    }
+
+    /// What a relevant model makes good of the loss of a model asked, by rank − 1, and the loss without any. In rough
+    /// units.
+    pub(super) fn rough_credits(&self, asked: usize) -> (&[u32; RANKS], u32) {
+        let whole = match self.cost {
+            Cost::Error => 1,
+            Cost::Adr => (self.recall.scale() / self.rough_unit) as u32,
+        };
+        (&self.rough[self.exam.label(asked) as usize], whole)
+    }
+
+    /// What a relevant model makes good of the loss of a model asked, by rank − 1; beyond, nothing.
+    pub(super) fn gains(&self, asked: usize) -> &[u128] {
+        match self.cost {
+            Cost::Error => &[1],
+            Cost::Adr => self.recall.weights(self.relevant(asked)),
+        }
+    }
+
+    /// The loss of a model asked that finds nothing.
+    pub(super) fn whole(&self, asked: usize) -> u128 {
+        match self.cost {
+            Cost::Error => 1,
+            Cost::Adr if self.relevant(asked) == 0 => 0,
+            Cost::Adr => self.recall.scale(),
+        }
+    }
+
+    /// The classes of the models, and for each class how many models those before it have.
+    pub(super) fn classes(&self) -> (&[u32], &[u32]) {
+        (self.exam.labels(), &self.starts)
+    }
+
+    /// Where the models of the class of the model asked stand when models are ordered by class.
+    pub(super) fn class_range(&self, asked: usize) -> Range<usize> {
+        let start = self.starts[self.exam.label(asked) as usize] as usize;
+        start..start + self.class(asked).len()
+    }
+
+    /// How many models there are to find at most.
+    pub(super) fn most_relevant(&self) -> usize {
+        self.members.iter().map(|members| members.len().saturating_sub(1)).max().unwrap_or(0)
     }
 
     /// The losses of a [`Block`](super::block::Block) are in these units. When it is 1, they are exact; otherwise they
@@ -89,16 +169,8 @@ impl<'a> Judge<'a> {
 
     /// The loss of one model asked, whose nearest models are `top`.
     pub(super) fn loss(&self, asked: usize, top: &[(f64, u32)]) -> u128 {
-        let right = |entry: &(f64, u32)| self.related(asked, entry.1);
-        match self.cost {
-            Cost::Error => u128::from(!top.first().is_some_and(right)),
-            Cost::Adr if self.relevant(asked) == 0 => 0,
-            Cost::Adr => {
-                let weights = self.recall.weights(self.relevant(asked));
-                let found = top.iter().zip(weights).filter(|(entry, _)| right(entry));
-                self.recall.scale() - found.map(|(_, &weight)| weight).sum::<u128>()
-            }
-        }
+        let found = top.iter().zip(self.gains(asked)).filter(|(entry, _)| self.related(asked, entry.1));
+        self.whole(asked) - found.map(|(_, &gain)| gain).sum::<u128>()
     }
 
     /// The loss when nothing is right.

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use super::{
     BEAM, Climb, PATIENCE, Search, Step,
-    block::LANES,
     ground::Ground,
     judge::Judge,
     race::{Mark, Race},
+    sketch::LANES,
 };
 use crate::{
     metrics::{Cancelled, Sample, Term},
@@ -82,19 +82,19 @@ impl Party<'_> {
         }
     }
 
-    /// Forward while the cost falls, backward while it falls, and again.
+    /// Forward while the cost falls, backward while it falls, and again, until neither falls from where it stands.
     fn strict<T: Term>(&self, mut place: Place<'_, T>) -> Result<Vec<Step>, Cancelled> {
-        loop {
-            let moves = place.steps.len();
-            for added in [true, false] {
-                while let Some(&mark) = self.best(&place, added, place.loss, 1, |_| true)?.first() {
-                    place.go(mark, added, self.judge);
-                }
+        // How many ways in a row led nowhere: both have been tried from here once that is two.
+        let (mut added, mut idle) = (true, 0);
+        while idle < 2 {
+            idle += 1;
+            while let Some(&mark) = self.best(&place, added, place.loss, 1, |_| true)?.first() {
+                place.go(mark, added, self.judge);
+                idle = 1;
             }
-            if place.steps.len() == moves {
-                return Ok(place.steps);
-            }
+            added = !added;
         }
+        Ok(place.steps)
     }
 
     /// The same, and on the level to where it has not been.

@@ -1,0 +1,166 @@
+//! The candidates of one addition, evaluated side by side.
+
+use pulp::Simd;
+
+use super::{
+    block::{Block, LANES, LEAST, Losses, MOST},
+    ground::{Ground, POLL},
+    race::{Mark, Outcome},
+    sketch::{self, Sketch},
+};
+use crate::{
+    metrics::{Cancelled, Term},
+    watch::Watch,
+};
+
+/// Strangers looked at in a brief evaluation.
+const BRIEF: usize = 48;
+
+/// Adds up the losses of all models asked for each of the candidates `indices`, a vector of them at a time, until none
+/// of those can stay below the bound.
+///
+/// First all models are asked briefly, which is enough to give up on most candidates; then those whose losses are not
+/// known yet are asked again; and for those candidates that may be best, ties are looked into.
+pub(super) struct Ask<'a, T> {
+    pub(super) ground: &'a Ground<'a, T>,
+    pub(super) indices: &'a [u32],
+    pub(super) bound: &'a dyn Fn() -> Mark,
+    pub(super) watch: &'a dyn Watch,
+}
+
+impl<T: Term> pulp::WithSimd for Ask<'_, T> {
+    type Output = Result<Vec<Outcome>, Cancelled>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        if !Sketch::<S>::fits(self.ground.judge) {
+            let mut outcomes = Vec::with_capacity(self.indices.len());
+            for indices in self.indices.chunks(S::F64_LANES) {
+                self.block(simd, indices, &mut outcomes)?;
+            }
+            return Ok(outcomes);
+        }
+        let mut outcomes = Vec::with_capacity(self.indices.len());
+        for indices in self.indices.chunks(S::F32_LANES) {
+            let mut some = self.sketch(simd, indices)?;
+            let left: Vec<usize> = (0..indices.len()).filter(|&at| some[at].is_none()).collect();
+            for places in left.chunks(S::F64_LANES) {
+                let indices: Vec<u32> = places.iter().map(|&at| indices[at]).collect();
+                let mut exact = Vec::with_capacity(places.len());
+                self.block(simd, &indices, &mut exact)?;
+                for (&at, outcome) in places.iter().zip(exact) {
+                    some[at] = Some(outcome);
+                }
+            }
+            outcomes.extend(some.into_iter().flatten());
+        }
+        Ok(outcomes)
+    }
+}
+
+impl<T: Term> Ask<'_, T> {
+    /// The outcomes of those candidates, as many as fit, that a sketch is enough to give up on.
+    #[inline(always)]
+    fn sketch<S: Simd>(&self, simd: S, indices: &[u32]) -> Result<Vec<Option<Outcome>>, Cancelled> {
+        let Ground { rows, asked, judge, columns, .. } = self.ground;
+        let mut sketch = Sketch::<S>::new(simd, columns, indices, rows.len());
+        let unit = judge.rough_unit();
+        let mut losses = [0; sketch::LANES];
+        let mut outcomes = vec![None; indices.len()];
+        for (nth, models) in asked.chunks(POLL).enumerate() {
+            if self.watch.cancelled() {
+                return Err(Cancelled);
+            }
+            for &model in models {
+                sketch.add_losses::<T>(simd, model as usize, &rows[model as usize], judge, &mut losses);
+            }
+            let bound = (self.bound)();
+            let losses = Sketch::<S>::by_candidate(&losses).map(|loss| u128::from(loss) * unit);
+            let beaten: Vec<_> = indices.iter().zip(losses).map(|(&i, loss)| ((loss, i) >= bound, loss)).collect();
+            let last = (nth + 1) * POLL >= asked.len();
+            if last || beaten.iter().all(|&(beaten, _)| beaten) {
+                // Those not asked are taken to change as those asked did.
+                let share = self.ground.share((nth + 1) * POLL);
+                let outcome = |(beaten, loss): (bool, u128)| beaten.then_some(Outcome::GivenUp(loss as f64 / share));
+                outcomes = beaten.into_iter().map(outcome).collect();
+                break;
+            }
+        }
+        Ok(outcomes)
+    }
+
+    /// The outcomes of candidates that fit one vector.
+    #[inline(always)]
+    fn block<S: Simd>(&self, simd: S, indices: &[u32], outcomes: &mut Vec<Outcome>) -> Result<(), Cancelled> {
+        let Ground { rows, asked, judge, columns, .. } = self.ground;
+        let mut block = Block::<S>::new(columns, indices, rows.len());
+        let unit = judge.unit() as f64;
+        let mut least = [0; LANES];
+        let mut unsure = Vec::new();
+        for (nth, models) in asked.chunks(POLL).enumerate() {
+            for &model in models {
+                let row = &rows[model as usize];
+                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, BRIEF);
+                add_lanes(&mut least, &losses);
+                if !sure {
+                    unsure.push((model, losses));
+                }
+            }
+            if self.may_stop(indices, &least)? {
+                // Those not asked are taken to change as those asked did.
+                let share = self.ground.share((nth + 1) * POLL);
+                outcomes
+                    .extend(indices.iter().zip(least).map(|(_, loss)| Outcome::GivenUp(loss as f64 * unit / share)));
+                return Ok(());
+            }
+        }
+        for models in unsure.chunks(POLL) {
+            for &(model, briefly) in models {
+                let row = &rows[model as usize];
+                let (losses, _) = block.losses::<T, LEAST>(simd, model as usize, row, judge, usize::MAX);
+                for ((least, briefly), loss) in least.iter_mut().zip(briefly).zip(losses) {
+                    *least += loss - briefly;
+                }
+            }
+            if self.may_stop(indices, &least)? {
+                outcomes.extend(indices.iter().zip(least).map(|(_, loss)| Outcome::GivenUp(loss as f64 * unit)));
+                return Ok(());
+            }
+        }
+        let mut most = [0; LANES];
+        for &model in asked {
+            let row = &rows[model as usize];
+            let (losses, _) = block.losses::<T, MOST>(simd, model as usize, row, judge, usize::MAX);
+            add_lanes(&mut most, &losses);
+        }
+        let unit = judge.unit();
+        for ((&index, least), most) in indices.iter().zip(least).zip(most) {
+            let loss = u128::from(least) * unit;
+            outcomes.push(if unit == 1 && least == most {
+                Outcome::Whole(loss)
+            } else if (loss, index) >= (self.bound)() {
+                Outcome::GivenUp(loss as f64)
+            } else {
+                self.ground.exactly(index, self.bound, self.watch)?
+            });
+        }
+        Ok(())
+    }
+
+    /// Whether no candidate can stay below the bound.
+    fn may_stop(&self, indices: &[u32], least: &Losses) -> Result<bool, Cancelled> {
+        if self.watch.cancelled() {
+            return Err(Cancelled);
+        }
+        let bound = (self.bound)();
+        let unit = self.ground.judge.unit();
+        Ok(indices.iter().zip(least).all(|(&index, &loss)| (u128::from(loss) * unit, index) >= bound))
+    }
+}
+
+#[inline(always)]
+fn add_lanes(sums: &mut Losses, lanes: &Losses) {
+    for (sum, lane) in sums.iter_mut().zip(lanes) {
+        *sum += lane;
+    }
+}

@@ -1,0 +1,187 @@
+//! Many candidates at once, roughly: twice as many as a [`Block`](super::block::Block) holds.
+//!
+//! Distances are computed as they are and then cut to the upper half of their bits. As integers these are in the order
+//! of the distances, which are not negative: what is less when cut was less before. A stranger is counted before a
+//! relative only when it is less when cut, so that the losses are those of [`LEAST`](super::block::LEAST) or a little
+//! less: never more than the true ones. That is enough to give up on nearly all candidates.
+
+use std::hint::black_box;
+
+use pulp::Simd;
+
+use super::{
+    Cost,
+    judge::Judge,
+    row::{NEAR, Row},
+};
+use crate::metrics::{Columns, Term};
+
+/// The lanes of the widest vector.
+pub(super) const LANES: usize = 16;
+/// Entries of a table of [`Judge::rough_credits`]: more than there can be relatives and strangers before one.
+pub(super) const RANKS: usize = 256;
+/// Strangers counted in one go.
+const CHUNK: usize = 8;
+
+/// A loss for each lane, in [`Judge::rough_unit`]s.
+pub(super) type Losses = [u64; LANES];
+
+/// The features of as many candidates as two vectors have lanes.
+pub(super) struct Sketch<S: Simd> {
+    /// By model. The first vector's candidates are in the odd lanes of what is cut, the second's in the even ones.
+    values: Vec<[S::f64s; 2]>,
+    odd: S::m32s,
+    relatives: Vec<S::u32s>,
+    before: Vec<S::u32s>,
+}
+
+impl<S: Simd> Sketch<S> {
+    /// Whether the lanes of this machine can be halved, and the classes are small enough.
+    pub(super) fn fits(judge: &Judge<'_>) -> bool {
+        S::F32_LANES == 2 * S::F64_LANES && cfg!(target_endian = "little") && judge.most_relevant() + NEAR < RANKS
+    }
+
+    /// For the features `indices` (from 1), at most as many as there are lanes. Lanes left over repeat the last one.
+    #[inline(always)]
+    pub(super) fn new(simd: S, columns: &Columns, indices: &[u32], models: usize) -> Self {
+        let lanes = 2 * S::F64_LANES;
+        let mut values = vec![0.0; lanes * models];
+        for lane in 0..lanes {
+            let column = columns.col(indices[lane.min(indices.len() - 1)] as usize - 1);
+            for (value, &of_model) in values[lane..].iter_mut().step_by(lanes).zip(column) {
+                *value = of_model;
+            }
+        }
+        let (vectors, _) = S::as_simd_f64s(&values);
+        let (pairs, _) = vectors.as_chunks::<2>();
+        let parity: Vec<u32> = (0..S::F32_LANES as u32).map(|lane| lane % 2).collect();
+        let odd = simd.equal_u32s(simd.partial_load_u32s(&parity), simd.splat_u32s(1));
+        Self { values: pairs.to_vec(), odd, relatives: Vec::new(), before: Vec::new() }
+    }
+
+    /// The loss of each candidate.
+    #[inline(always)]
+    pub(super) fn by_candidate(losses: &Losses) -> impl Iterator<Item = u64> {
+        let half = S::F64_LANES;
+        (0..2 * half).map(move |at| losses[if at < half { 2 * at + 1 } else { 2 * (at - half) }])
+    }
+
+    /// Adds what one model asked loses at least under each of the candidates.
+    #[inline(always)]
+    pub(super) fn add_losses<T: Term>(
+        &mut self,
+        simd: S,
+        asked: usize,
+        row: &Row,
+        judge: &Judge<'_>,
+        losses: &mut Losses,
+    ) {
+        self.relatives.clear();
+        for &model in judge.class(asked) {
+            if model as usize != asked {
+                self.relatives.push(self.cut::<T>(simd, asked, (row.sums[model as usize], model)));
+            }
+        }
+        if self.relatives.is_empty() {
+            // Nothing right is there to be found, or nothing to be lost.
+            let lost = u64::from(judge.cost() == Cost::Error);
+            for loss in losses {
+                *loss += lost;
+            }
+            return;
+        }
+        if judge.cost() == Cost::Error {
+            // The nearest alone matters.
+            let mut nearest = self.relatives[0];
+            for &sums in &self.relatives[1..] {
+                nearest = simd.min_u32s(nearest, sums);
+            }
+            self.relatives.clear();
+            self.relatives.push(nearest);
+        } else {
+            for &(a, b) in judge.network(asked) {
+                let (low, high) = (self.relatives[a as usize], self.relatives[b as usize]);
+                self.relatives[a as usize] = simd.min_u32s(low, high);
+                self.relatives[b as usize] = simd.max_u32s(low, high);
+            }
+        }
+        let live = self.count::<T>(simd, asked, row);
+        let (credits, whole) = judge.rough_credits(asked);
+        let mut gained = [0; LANES];
+        for (nth, before) in (0..).zip(&self.before[..live]) {
+            let before: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(before));
+            for (gained, before) in gained.iter_mut().zip(before) {
+                *gained += credits[(nth + before) as usize % RANKS];
+            }
+        }
+        for (loss, gained) in losses.iter_mut().zip(gained) {
+            // Credits are rounded up, so all of them may be more than the whole.
+            *loss += u64::from(whole.saturating_sub(gained));
+        }
+    }
+
+    /// The distances to a model that is `sum` away without the candidates, cut.
+    #[inline(always)]
+    fn cut<T: Term>(&self, simd: S, asked: usize, (sum, model): (f64, u32)) -> S::u32s {
+        let sum = simd.splat_f64s(sum);
+        let ([a, b], [c, d]) = (self.values[asked], self.values[model as usize]);
+        let one = as_u32s(simd, simd.add_f64s(sum, T::terms(simd, a, c)));
+        let two = as_u32s(simd, simd.add_f64s(sum, T::terms(simd, b, d)));
+        simd.select_u32s(self.odd, one, simd.rotate_left_u32s(two, 1))
+    }
+
+    /// Counts, for each relative, the strangers before it. Returns how many of the nearest relatives are among the
+    /// first Q of any lane.
+    #[inline(always)]
+    fn count<T: Term>(&mut self, simd: S, asked: usize, row: &Row) -> usize {
+        let count = self.relatives.len();
+        self.before.clear();
+        self.before.resize(count, simd.splat_u32s(0));
+        // Were it known to be one, masks would be made numbers to be subtracted: one instruction more.
+        let one = simd.splat_u32s(black_box(1));
+        // The relatives before `first` are nearer than any stranger left.
+        let (mut first, mut live) = (0, count);
+        for chunk in row.near.chunks(CHUNK) {
+            while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
+                live -= 1;
+            }
+            let near = simd.splat_u32s((chunk[0].0.to_bits() >> 32) as u32);
+            while first < live && none::<S>(simd, simd.greater_than_or_equal_u32s(self.relatives[first], near)) {
+                first += 1;
+            }
+            if first == live {
+                return live;
+            }
+            let mut strangers = [simd.splat_u32s(u32::MAX); CHUNK];
+            for (sums, &stranger) in strangers.iter_mut().zip(chunk) {
+                *sums = self.cut::<T>(simd, asked, stranger);
+            }
+            for (before, &relative) in self.before[first..live].iter_mut().zip(&self.relatives[first..live]) {
+                let mut count = *before;
+                for &stranger in &strangers {
+                    let less = simd.less_than_u32s(stranger, relative);
+                    count = simd.select_u32s(less, simd.add_u32s(count, one), count);
+                }
+                *before = count;
+            }
+        }
+        live
+    }
+
+    /// The lanes in which the relative at `at` is still among the first Q.
+    #[inline(always)]
+    fn matter(&self, simd: S, at: usize) -> S::m32s {
+        simd.less_than_u32s(self.before[at], simd.splat_u32s((self.relatives.len() - at) as u32))
+    }
+}
+
+/// The same bits.
+#[inline(always)]
+fn as_u32s<S: Simd>(simd: S, a: S::f64s) -> S::u32s {
+    pulp::bytemuck::cast(simd.transmute_u64s_f64s(a))
+}
+
+#[inline(always)]
+fn none<S: Simd>(simd: S, mask: S::m32s) -> bool {
+    simd.first_true_m32s(mask) == S::F32_LANES
+}
