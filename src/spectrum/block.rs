@@ -45,12 +45,13 @@ impl Kernel for Multiply<'_> {
                     store(at, lanes.mul(lanes.load(own), lanes.splat(value)), own);
                 }
             }
-            Product::Rows(offsets, columns, values) => {
+            Product::Rows(starts, entries) => {
                 for (at, own) in x.iter().enumerate() {
-                    let range = offsets[at] as usize..offsets[at + 1] as usize;
                     let mut sum = lanes.zero();
-                    for (&column, &value) in columns[range.clone()].iter().zip(&values[range]) {
-                        sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
+                    for entries in &entries[starts[at] as usize..starts[at + 1] as usize] {
+                        for (&column, &value) in entries.columns.iter().zip(&entries.values) {
+                            sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
+                        }
                     }
                     store(at, sum, own);
                 }
@@ -142,32 +143,6 @@ impl Kernel for Combine<'_> {
                 sum = lanes.add_mul(sum, lanes.splat(value), factor);
             }
             *to = lanes.row(sum);
-        }
-    }
-}
-
-/// `first = second = x M` with an eight by eight M.
-pub(super) struct CombineTwice<'a> {
-    pub x: &'a [Row],
-    pub factor: &'a Square,
-    pub first: &'a mut [Row],
-    pub second: &'a mut [Row],
-}
-
-impl Kernel for CombineTwice<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
-        let Self { x, factor, first, second } = self;
-        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
-        for ((first, second), row) in first.iter_mut().zip(second).zip(x) {
-            let mut sum = lanes.zero();
-            for (&factor, &value) in factor.iter().zip(row) {
-                sum = lanes.add_mul(sum, lanes.splat(value), factor);
-            }
-            *first = lanes.row(sum);
-            *second = *first;
         }
     }
 }

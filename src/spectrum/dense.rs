@@ -81,10 +81,10 @@ fn full(matrix: &Symmetric) -> (Vec<f64>, Vec<f64>) {
 /// The eigenpairs of `A x = λ B x`, ascending, with xᵀBx = 1.
 pub(super) fn pairs(a: &[f64], b: &[f64], n: usize) -> Option<Vec<(f64, Vec<f64>)>> {
     let c = cholesky(b, n)?;
-    let mut m = congruent(a, &c, n);
+    let m = congruent(a, &c, n);
     let mut vectors = identity(n);
     let per = n.div_ceil(WIDTH);
-    let values = eigen(&mut m, n, &mut vectors)?;
+    let values = eigen(&m, n, &mut vectors)?;
     let mut found: Vec<(f64, Vec<f64>)> = values
         .iter()
         .enumerate()
@@ -106,7 +106,7 @@ pub(super) fn pairs(a: &[f64], b: &[f64], n: usize) -> Option<Vec<(f64, Vec<f64>
 
 /// Eigenvalues of C⁻¹ A C⁻ᵀ with `CCᵀ = B`.
 fn reduced(a: &[f64], b: &[f64], n: usize) -> Option<Vec<f64>> {
-    eigen(&mut congruent(a, &cholesky(b, n)?, n), n, &mut [])
+    eigen(&congruent(a, &cholesky(b, n)?, n), n, &mut [])
 }
 
 /// The lower triangular C with `CCᵀ = B`.

@@ -6,10 +6,10 @@
 
 use self::projected::{cholesky, product, projected};
 use super::{
-    block::{Combine, CombineTwice, Dots, Multiply, Recur, Residual, Square, Update},
+    block::{Combine, Dots, Multiply, Recur, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Panel, PanelDots, PanelUpdate, Round, panels},
+    panel::{Normalise, Panel, PanelDots, PanelUpdate, panels},
     pencil::{Pencil, Product},
     poll::{Poll, Stop},
     small::{eigen, identity},
@@ -26,6 +26,9 @@ const WARMING: usize = 3;
 /// decomposition Q is orthonormal to rounding over that), and in one that is only to be multiplied again.
 const STRICTLY: f64 = 1e-3;
 const ROUGHLY: f64 = 1e-9;
+
+/// Decompositions of a block after which it is taken as it is.
+const ROUNDS: usize = 7;
 
 /// Memory that one run leaves to the next.
 #[derive(Debug, Default)]
@@ -137,10 +140,13 @@ impl<'a> Krylov<'a> {
             random,
         };
         for _ in 0..WARMING {
-            this.normalise(0, ROUGHLY, poll)?;
+            let (_, inverse) = this.decompose(0, ROUGHLY, poll)?;
+            let Scratch { work, mass, .. } = &mut *this.scratch;
+            dispatch(Combine { x: mass.rows(), factor: &inverse, to: work.rows_mut() });
+            poll.charge(Cost::Blocks);
             this.apply(poll)?;
         }
-        this.normalise(0, STRICTLY, poll)?;
+        this.normalise(0, poll)?;
         this.keep();
         Ok(this)
     }
@@ -161,11 +167,11 @@ impl<'a> Krylov<'a> {
             self.measure();
             poll.charge(Cost::Solves);
         }
-        self.recur();
+        let alpha = self.recur();
         poll.charge(Cost::Orthogonalisation);
-        let lost = self.orthogonalise(blocks, poll)?;
+        let lost = self.orthogonalise(blocks, Some(&alpha), poll)?;
         self.lost.push(lost);
-        let beta = self.normalise(blocks, STRICTLY, poll)?;
+        let beta = self.normalise(blocks, poll)?;
         self.beta.push(beta);
         self.keep();
         Ok(())
@@ -210,7 +216,10 @@ impl<'a> Krylov<'a> {
     /// The three-term recurrence: takes out of `work` its large components, those along the last two blocks. Only
     /// then is one pass of orthogonalisation enough: it multiplies what orthogonality the basis lacks with what it
     /// removes.
-    fn recur(&mut self) {
+    ///
+    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless eigenvectors
+    /// are wanted.
+    fn recur(&mut self) -> Square {
         let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
         let mut sum = [Square::default()];
         if let Some(beta) = self.beta.last() {
@@ -228,21 +237,25 @@ impl<'a> Krylov<'a> {
         let skew = skew.fold(0.0_f64, |most, (i, j)| most.max((sum[i][j] - sum[j][i]).abs()));
         // False for NaN too.
         self.symmetric &= skew <= 1e-5 * largest;
-        dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
+        if matches!(self.purpose, Purpose::Vectors(_)) {
+            dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
+        }
         self.alpha.push(alpha);
+        alpha
     }
 
     /// Makes `work` B-orthogonal to the first so many blocks and to the locked vectors, and returns its components
-    /// along the blocks.
-    fn orthogonalise(&mut self, blocks: usize, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, images, exact, work, mass, room, .. } = &mut *self.scratch;
+    /// along the blocks, without those along the newest one that are known already.
+    fn orthogonalise(&mut self, blocks: usize, known: Option<&Square>, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
+        let Scratch { blocks: basis, images, exact, now, work, mass, room, .. } = &mut *self.scratch;
         let mut sums = Vec::new();
         match self.purpose {
             Purpose::Values => {
                 let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
                 let images: Vec<&[Panel]> = images.iter().take(blocks).map(Vec::as_slice).collect();
                 let dual = if matches!(self.pencil.mass, Product::Unit) { &basis } else { &images };
-                dispatch(PanelDots { basis: dual, t: work.rows(), room, sums: &mut sums });
+                let less = known.map(|alpha| (now.rows(), alpha));
+                dispatch(PanelDots { basis: dual, t: work.rows_mut(), less, room, sums: &mut sums });
                 poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
                 let single: Vec<_> = sums.iter().map(|sum| sum.map(|row| row.map(|value| value as f32))).collect();
                 dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut() });
@@ -264,29 +277,56 @@ impl<'a> Krylov<'a> {
         Ok(sums)
     }
 
-    /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix; Q in `next`, `BQ` in `newest` and
-    /// in `work`, where it is to be multiplied next. Columns that depend on the others are replaced by random ones,
-    /// with zeros in R.
-    fn normalise(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<Square, Stop> {
+    /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix. Q is to be the block `at` of the
+    /// basis and is in `next`; `BQ` is in `newest` and in `work`, where it is to be multiplied next. Columns that
+    /// depend on the others are replaced by random ones, with zeros in R.
+    fn normalise(&mut self, at: usize, poll: &mut Poll) -> Result<Square, Stop> {
+        let (total, inverse) = self.decompose(at, STRICTLY, poll)?;
+        let Scratch { blocks, images, next, work, mass, newest, .. } = &mut *self.scratch;
+        let room = |list: &mut Vec<Vec<Panel>>, count: usize| {
+            if list.len() == at {
+                list.push(Vec::new());
+            }
+            list[at].resize(count, Panel::default());
+        };
+        let mut single: [&mut [Panel]; 2] = [&mut [], &mut []];
+        if matches!(self.purpose, Purpose::Values) {
+            let count = panels(work.rows().len());
+            room(blocks, count);
+            single[0] = &mut blocks[at];
+            if !matches!(self.pencil.mass, Product::Unit) {
+                room(images, count);
+                single[1] = &mut images[at];
+            }
+        }
+        let (x, y, q, b) = (work.rows_mut(), mass.rows(), next.rows_mut(), newest.rows_mut());
+        dispatch(Normalise { x, y, factor: &inverse, q, b, single });
+        poll.charge(Cost::Blocks);
+        poll.spend(4 * WIDTH * work.rows().len())?;
+        Ok(total)
+    }
+
+    /// Finds R and a matrix M such that `work M` is B-orthonormal, with `B work` in `mass`; `work` may have changed for
+    /// that, so that it was `work M R` at first.
+    fn decompose(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<(Square, Square), Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
         if blocks == 0 && !self.purpose.locked().is_empty() {
-            self.orthogonalise(0, poll)?;
+            self.orthogonalise(0, None, poll)?;
         }
-        for _ in 0..6 {
-            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
+        let mut round = 0;
+        loop {
+            let Scratch { next, work, mass, .. } = &mut *self.scratch;
             let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
             poll.charge(Cost::Products);
             let (upper, inverse, worst, lost) = cholesky(&gram);
-            dispatch(Combine { x: work.rows(), factor: &inverse, to: next.rows_mut() });
-            let (first, second) = (newest.rows_mut(), work.rows_mut());
-            dispatch(CombineTwice { x: mass.rows(), factor: &inverse, first, second });
-            poll.charge(Cost::Blocks);
-            poll.spend(4 * WIDTH * next.rows().len())?;
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);
-            if lost == 0 && worst > share {
-                break;
+            round += 1;
+            if (lost == 0 && worst > share) || round == ROUNDS {
+                return Ok((total, inverse));
             }
+            dispatch(Combine { x: work.rows(), factor: &inverse, to: next.rows_mut() });
+            poll.charge(Cost::Blocks);
             std::mem::swap(next, work);
             // Cholesky's Q is off by rounding over `worst`: it takes a second round, but Q still has the basis's
             // complement to nearly all digits.
@@ -300,37 +340,21 @@ impl<'a> Krylov<'a> {
                 }
             }
             for _ in 0..=usize::from(lost != 0) {
-                self.orthogonalise(blocks, poll)?;
+                self.orthogonalise(blocks, None, poll)?;
             }
         }
-        Ok(total)
     }
 
     /// Takes `next` as the next block of the basis.
     fn keep(&mut self) {
         let at = self.beta.len();
-        let Scratch { blocks, images, exact, now, past, next, newest, .. } = &mut *self.scratch;
-        let round = |list: &mut Vec<Vec<Panel>>, x: &[Row]| {
-            if list.len() == at {
-                list.push(Vec::new());
+        let Scratch { exact, now, past, next, .. } = &mut *self.scratch;
+        if matches!(self.purpose, Purpose::Vectors(_)) {
+            if exact.len() == at {
+                exact.push(Buffer::default());
             }
-            list[at].resize(panels(x.len()), Panel::default());
-            dispatch(Round { x, to: &mut list[at] });
-        };
-        match self.purpose {
-            Purpose::Values => {
-                round(blocks, next.rows());
-                if !matches!(self.pencil.mass, Product::Unit) {
-                    round(images, newest.rows());
-                }
-            }
-            Purpose::Vectors(_) => {
-                if exact.len() == at {
-                    exact.push(Buffer::default());
-                }
-                exact[at].reserve(self.pencil.order() * WIDTH);
-                exact[at].rows_mut().copy_from_slice(next.rows());
-            }
+            exact[at].reserve(self.pencil.order() * WIDTH);
+            exact[at].rows_mut().copy_from_slice(next.rows());
         }
         std::mem::swap(past, now);
         std::mem::swap(now, next);
@@ -377,7 +401,7 @@ impl Krylov<'_> {
         let n = blocks * WIDTH;
         projected(&self.alpha, &self.beta, &self.lost, &mut self.scratch.small);
         let mut all = identity(n);
-        let theta = eigen(&mut self.scratch.small, n, &mut all)?;
+        let theta = eigen(&self.scratch.small, n, &mut all)?;
         // Equal values belong to different columns.
         let mut columns: Vec<usize> = Vec::with_capacity(wanted.len());
         for ritz in wanted {

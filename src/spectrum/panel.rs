@@ -32,32 +32,60 @@ fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
     }
 }
 
-/// Rounds a block to single precision.
-pub(super) struct Round<'a> {
-    pub x: &'a [Row],
-    pub to: &'a mut [Panel],
+/// `q = x M` and `x = b = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to
+/// single precision as well, for the basis, if there is room for them.
+pub(super) struct Normalise<'a> {
+    pub x: &'a mut [Row],
+    pub y: &'a [Row],
+    pub factor: &'a Square,
+    pub q: &'a mut [Row],
+    pub b: &'a mut [Row],
+    pub single: [&'a mut [Panel]; 2],
 }
 
-impl Kernel for Round<'_> {
+impl Kernel for Normalise<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        for (to, x) in self.to.iter_mut().zip(self.x.chunks(ROWS)) {
-            to.0 = read(lanes, x).map(|column| lanes.wide_row(column));
+        let Self { x, y, factor, q, b, single: [first, second] } = self;
+        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+        let combine = |row: &Row| {
+            let mut sum = lanes.zero();
+            for (&factor, &value) in factor.iter().zip(row) {
+                sum = lanes.add_mul(sum, lanes.splat(value), factor);
+            }
+            lanes.row(sum)
+        };
+        let groups = x.chunks_mut(ROWS).zip(y.chunks(ROWS)).zip(q.chunks_mut(ROWS).zip(b.chunks_mut(ROWS)));
+        for (at, ((x, y), (q, b))) in groups.enumerate() {
+            for (q, x) in q.iter_mut().zip(x.iter()) {
+                *q = combine(x);
+            }
+            for ((b, y), x) in b.iter_mut().zip(y).zip(x) {
+                *b = combine(y);
+                *x = *b;
+            }
+            for (to, rows) in [(first.get_mut(at), q), (second.get_mut(at), b)] {
+                if let Some(to) = to {
+                    to.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
+                }
+            }
         }
     }
 }
 
 /// Panels of both factors that stay in the first cache.
-const TILE: usize = 32;
+const TILE: usize = 16;
 
-/// Sets the i-th square to Vᵢᵀ t for every block of a basis.
+/// Sets the i-th square to Vᵢᵀ t for every block of a basis, after `t −= U M` if such a pair is given.
 ///
 /// Products are summed in single precision over the rows of a tile, and in double precision over the tiles.
 pub(super) struct PanelDots<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
-    pub t: &'a [Row],
+    pub t: &'a mut [Row],
+    /// U and M.
+    pub less: Option<(&'a [Row], &'a Square)>,
     /// 64 rows for each block.
     pub room: &'a mut Vec<Row>,
     pub sums: &'a mut Vec<Square>,
@@ -68,26 +96,38 @@ impl Kernel for PanelDots<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, t, room, sums } = self;
+        let Self { basis, t, less, room, sums } = self;
+        let factor: Option<[L::Reg; WIDTH]> = less.map(|(_, factor)| std::array::from_fn(|at| lanes.load(&factor[at])));
         room.clear();
         room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
         let mut tile = [Panel::default(); TILE];
-        for (at, rows) in t.chunks(TILE * ROWS).enumerate() {
+        for (at, rows) in t.chunks_mut(TILE * ROWS).enumerate() {
             let used = panels(rows.len());
             let tile = &mut tile[..used];
+            if let (Some((u, _)), Some(factor)) = (less, factor) {
+                for (row, u) in rows.iter_mut().zip(&u[at * TILE * ROWS..]) {
+                    let mut sum = lanes.load(row);
+                    for (&factor, &value) in factor.iter().zip(u) {
+                        sum = lanes.sub_mul(sum, lanes.splat(value), factor);
+                    }
+                    *row = lanes.row(sum);
+                }
+            }
             for (panel, rows) in tile.iter_mut().zip(rows.chunks(ROWS)) {
                 panel.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
             }
+            let range = at * TILE..at * TILE + used;
             for (block, total) in basis.iter().zip(room.chunks_mut(WIDTH * WIDTH)) {
-                let block = &block[at * TILE..at * TILE + used];
+                let block = &block[range.clone()];
                 if L::MANY {
-                    for (i, j) in [(0, 0), (0, 4), (4, 0), (4, 4)] {
-                        dots::<L, 4>(lanes, block, tile, (i, j), total);
+                    // The block comes from afar, and all of a panel at once, one line after the other.
+                    for j in (0..WIDTH).step_by(2) {
+                        dots::<L, WIDTH, 2>(lanes, block, tile, (0, j), total);
                     }
                 } else {
                     for i in (0..WIDTH).step_by(2) {
                         for j in (0..WIDTH).step_by(2) {
-                            dots::<L, 2>(lanes, block, tile, (i, j), total);
+                            dots::<L, 2, 2>(lanes, block, tile, (i, j), total);
                         }
                     }
                 }
@@ -100,20 +140,20 @@ impl Kernel for PanelDots<'_, '_> {
     }
 }
 
-/// Adds the products of `N` vectors of a block with `N` of the tile, as eight partial sums each.
+/// Adds the products of `M` vectors of a block with `N` of the tile, as eight partial sums each.
 #[inline(always)]
-fn dots<L: Lanes, const N: usize>(
+fn dots<L: Lanes, const M: usize, const N: usize>(
     lanes: L,
     block: &[Panel],
     tile: &[Panel],
     (i, j): (usize, usize),
     total: &mut [Row],
 ) {
-    let mut sum = [[lanes.wide_splat(0.0); N]; N];
+    let mut sum = [[lanes.wide_splat(0.0); N]; M];
     for (x, y) in block.iter().zip(tile) {
-        let x: [L::Wide; N] = std::array::from_fn(|at| lanes.wide(&x.0[i + at]));
         let y: [L::Wide; N] = std::array::from_fn(|at| lanes.wide(&y.0[j + at]));
-        for (sum, &x) in sum.iter_mut().zip(&x) {
+        for (at, sum) in sum.iter_mut().enumerate() {
+            let x = lanes.wide(&x.0[i + at]);
             for (sum, &y) in sum.iter_mut().zip(&y) {
                 *sum = lanes.wide_add_mul(*sum, x, y);
             }
@@ -128,6 +168,9 @@ fn dots<L: Lanes, const N: usize>(
     }
 }
 
+/// Panels that are read from one block after the other: as much as the hardware fetches ahead.
+const PAGE: usize = 8;
+
 /// `w −= Σ Vᵢ Cᵢ` over the blocks of a basis, for C so small that single precision is enough for the sum.
 pub(super) struct PanelUpdate<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
@@ -141,21 +184,32 @@ impl Kernel for PanelUpdate<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { basis, factors, w } = self;
-        let mut sum = [[lanes.wide_splat(0.0); WIDTH]; 2];
-        for (at, w) in w.chunks_mut(2 * ROWS).enumerate() {
-            let first = 2 * at;
-            if L::MANY && w.len() > ROWS {
-                sum = update::<L, 2, WIDTH>(lanes, basis, factors, first, 0);
-            } else {
-                for (half, sum) in sum.iter_mut().enumerate().take(panels(w.len())) {
-                    for j in (0..WIDTH).step_by(2) {
-                        let [pair] = update::<L, 1, 2>(lanes, basis, factors, first + half, j);
-                        sum[j..j + 2].copy_from_slice(&pair);
+        let mut sums = [Panel::default(); PAGE];
+        for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate() {
+            let first = at * PAGE;
+            let sums = &mut sums[..panels(w.len())];
+            sums.fill(Panel::default());
+            for (block, factor) in basis.iter().zip(factors) {
+                let block = &block[first..first + sums.len()];
+                if L::MANY {
+                    let (pairs, rest) = block.as_chunks::<2>();
+                    let (to, last) = sums.as_chunks_mut::<2>();
+                    for (to, pair) in to.iter_mut().zip(pairs) {
+                        update::<L, 2, WIDTH>(lanes, pair, factor, to, 0);
+                    }
+                    for (to, one) in last.iter_mut().zip(rest) {
+                        update::<L, 1, WIDTH>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), 0);
+                    }
+                } else {
+                    for (to, one) in sums.iter_mut().zip(block) {
+                        for j in (0..WIDTH).step_by(2) {
+                            update::<L, 1, 2>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), j);
+                        }
                     }
                 }
             }
-            for (w, sum) in w.chunks_mut(ROWS).zip(sum) {
-                let change = lanes.rows(sum);
+            for (w, sum) in w.chunks_mut(ROWS).zip(sums) {
+                let change = lanes.rows(std::array::from_fn(|at| lanes.wide(&sum.0[at])));
                 for (w, change) in w.iter_mut().zip(change) {
                     *w = lanes.row(lanes.sub(lanes.load(w), change));
                 }
@@ -164,27 +218,29 @@ impl Kernel for PanelUpdate<'_, '_> {
     }
 }
 
-/// The sums for `P` panels from `first` on and the `N` vectors from `j` on.
+/// Adds the products of `P` panels of a block with the `N` columns of its factor from `j` on.
 #[inline(always)]
 fn update<L: Lanes, const P: usize, const N: usize>(
     lanes: L,
-    basis: &[&[Panel]],
-    factors: &[[[f32; WIDTH]; WIDTH]],
-    first: usize,
+    block: &[Panel; P],
+    factor: &[[f32; WIDTH]; WIDTH],
+    to: &mut [Panel; P],
     j: usize,
-) -> [[L::Wide; N]; P] {
-    let mut sum = [[lanes.wide_splat(0.0); N]; P];
-    for (block, factor) in basis.iter().zip(factors) {
-        let block = &block[first..first + P];
-        for (k, factor) in factor.iter().enumerate() {
-            let x: [L::Wide; P] = std::array::from_fn(|at| lanes.wide(&block[at].0[k]));
-            for (at, &factor) in factor[j..j + N].iter().enumerate() {
-                let factor = lanes.wide_splat(factor);
-                for (sum, &x) in sum.iter_mut().zip(&x) {
-                    sum[at] = lanes.wide_add_mul(sum[at], x, factor);
-                }
+) {
+    let mut sum: [[L::Wide; N]; P] =
+        std::array::from_fn(|panel| std::array::from_fn(|at| lanes.wide(&to[panel].0[j + at])));
+    for (k, factor) in factor.iter().enumerate() {
+        let x: [L::Wide; P] = std::array::from_fn(|at| lanes.wide(&block[at].0[k]));
+        for (at, &factor) in factor[j..j + N].iter().enumerate() {
+            let factor = lanes.wide_splat(factor);
+            for (sum, &x) in sum.iter_mut().zip(&x) {
+                sum[at] = lanes.wide_add_mul(sum[at], x, factor);
             }
         }
     }
-    sum
+    for (to, sum) in to.iter_mut().zip(sum) {
+        for (to, sum) in to.0[j..j + N].iter_mut().zip(sum) {
+            *to = lanes.wide_row(sum);
+        }
+    }
 }

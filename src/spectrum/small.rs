@@ -13,21 +13,20 @@ use super::lanes::{Kernel, Lanes, Row, WIDTH, dispatch};
 ///
 /// `vectors` has for each of the n columns the same number of rows of eight values: on entry rows of a matrix Z by
 /// columns, on return Z times the eigenvectors.
-pub(super) fn eigen(a: &mut [f64], n: usize, vectors: &mut [Row]) -> Option<Vec<f64>> {
+pub(super) fn eigen(a: &[f64], n: usize, vectors: &mut [Row]) -> Option<Vec<f64>> {
     if n == 0 {
         return Some(Vec::new());
     }
     let mut diagonal = vec![0.0; n];
     let mut beside = vec![0.0; n];
     let per = vectors.len() / n;
-    dispatch(Tridiagonal { a, n, vectors, per, diagonal: &mut diagonal, beside: &mut beside });
+    dispatch(Tridiagonal { a, vectors, per, diagonal: &mut diagonal, beside: &mut beside });
     let done = dispatch(Ql { vectors, per, diagonal: &mut diagonal, beside: &mut beside });
     (done && diagonal.iter().all(|value| value.is_finite())).then_some(diagonal)
 }
 
 struct Tridiagonal<'a> {
-    a: &'a mut [f64],
-    n: usize,
+    a: &'a [f64],
     vectors: &'a mut [Row],
     per: usize,
     diagonal: &'a mut [f64],
@@ -37,48 +36,64 @@ struct Tridiagonal<'a> {
 impl Kernel for Tridiagonal<'_> {
     type Output = ();
 
+    /// Each step is one pass over what is left of the matrix: the reflection of the step before is applied to a row,
+    /// A −= v pᵀ + p vᵀ, and the row then has its share in the product that the next reflection needs.
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { a, n, vectors, per, diagonal, beside } = self;
-        let mut v = vec![0.0; n];
-        let mut p = vec![0.0; n];
-        for k in 0..n.saturating_sub(1) {
-            diagonal[k] = a[k * n + k];
+        let Self { a, vectors, per, diagonal, beside } = self;
+        let n = diagonal.len();
+        let width = n.div_ceil(WIDTH);
+        let mut rows = vec![[0.0; WIDTH]; n * width];
+        for (to, from) in rows.chunks_mut(width).zip(a.chunks(n)) {
+            to.as_flattened_mut()[..n].copy_from_slice(from);
+        }
+        // Zero before the first entry that belongs to them.
+        let [mut v, mut p, mut next, mut product] = std::array::from_fn(|_| vec![[0.0; WIDTH]; width]);
+        for k in 0..n {
             let first = k + 1;
-            let column = &a[k * n + first..(k + 1) * n];
-            let norm = column.iter().fold(0.0, |sum, x| sum + x * x).sqrt();
+            let here = &mut rows[k * width..];
+            pass::<L, 1>(lanes, here, [&v, &p, &next], &mut product, k, k / WIDTH);
+            let row = &here.as_flattened()[..n];
+            diagonal[k] = row[k];
+            if first == n {
+                break;
+            }
+            let column = &row[first..];
             let tail = column[1..].iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let norm = column.iter().fold(0.0, |sum, x| sum + x * x).sqrt();
+            next.as_flattened_mut().fill(0.0);
+            let mut tau = 0.0;
             if tail == 0.0 {
                 beside[k] = column[0];
-                continue;
+            } else {
+                // H = I − τ v vᵀ with H x = −sign(x₀) ‖x‖ e₀.
+                let next = &mut next.as_flattened_mut()[..n];
+                next[first..].copy_from_slice(column);
+                let alpha = if next[first] > 0.0 { -norm } else { norm };
+                next[first] -= alpha;
+                beside[k] = alpha;
             }
-            // H = I − τ v vᵀ with H x = −sign(x₀) ‖x‖ e₀.
-            let v = &mut v[..n - first];
-            v.copy_from_slice(column);
-            let alpha = if v[0] > 0.0 { -norm } else { norm };
-            v[0] -= alpha;
-            let tau = 2.0 / v.iter().fold(0.0, |sum, x| sum + x * x);
-            beside[k] = alpha;
-            let p = &mut p[..n - first];
-            p.fill(0.0);
-            for (at, &value) in v.iter().enumerate() {
-                let row = &a[(first + at) * n + first..(first + at + 1) * n];
-                for (p, x) in p.iter_mut().zip(row) {
-                    *p = x.mul_add(value, *p);
-                }
+            if tail != 0.0 {
+                tau = 2.0 / inner(lanes, &next, &next);
             }
-            let inner = v.iter().zip(p.iter()).fold(0.0, |sum, (v, p)| sum + v * p);
-            let shift = 0.5 * tau * tau * inner;
-            for (p, v) in p.iter_mut().zip(v.iter()) {
-                *p = tau * *p - shift * v;
+            product.fill([0.0; WIDTH]);
+            let (mut at, from) = (first, first / WIDTH);
+            while at + ROWS <= n {
+                pass::<L, ROWS>(lanes, &mut rows[at * width..], [&v, &p, &next], &mut product, at, from);
+                at += ROWS;
             }
-            for at in 0..v.len() {
-                let row = &mut a[(first + at) * n + first..(first + at + 1) * n];
-                let (x, y) = (-v[at], -p[at]);
-                for ((a, p), v) in row.iter_mut().zip(p.iter()).zip(v.iter()) {
-                    *a = v.mul_add(y, p.mul_add(x, *a));
-                }
+            for at in at..n {
+                pass::<L, 1>(lanes, &mut rows[at * width..], [&v, &p, &next], &mut product, at, from);
             }
+            product.as_flattened_mut()[..first].fill(0.0);
+            let shift = 0.5 * tau * tau * inner(lanes, &next, &product);
+            for (p, (product, v)) in p.iter_mut().zip(product.iter().zip(&next)) {
+                let scaled = lanes.mul(lanes.load(product), lanes.splat(tau));
+                *p = lanes.row(lanes.sub_mul(scaled, lanes.load(v), lanes.splat(shift)));
+            }
+            std::mem::swap(&mut v, &mut next);
+            next.fill([0.0; WIDTH]);
+            let v = &v.as_flattened()[first..n];
             for group in 0..per {
                 let mut sum = lanes.zero();
                 for (at, &value) in v.iter().enumerate() {
@@ -91,8 +106,48 @@ impl Kernel for Tridiagonal<'_> {
                 }
             }
         }
-        diagonal[n - 1] = a[n * n - 1];
     }
+}
+
+/// Rows that a pass takes together.
+const ROWS: usize = 4;
+
+/// Applies A −= v pᵀ + p vᵀ to the `R` rows from row `at` on, which `rows` begins with, and adds them times their
+/// entries of `next` to `product`; in the columns from the eight numbered `from` on.
+#[inline(always)]
+fn pass<L: Lanes, const R: usize>(
+    lanes: L,
+    rows: &mut [Row],
+    [v, p, next]: [&[Row]; 3],
+    product: &mut [Row],
+    at: usize,
+    from: usize,
+) {
+    let width = v.len();
+    let entry = |x: &[Row], row: usize| lanes.splat(x[(at + row) / WIDTH][(at + row) % WIDTH]);
+    let here: [[L::Reg; 3]; R] = std::array::from_fn(|row| [entry(v, row), entry(p, row), entry(next, row)]);
+    let rows = &mut rows[..R * width];
+    for column in from..width {
+        let (over_v, over_p) = (lanes.load(&v[column]), lanes.load(&p[column]));
+        let mut sum = lanes.load(&product[column]);
+        for (row, [v, p, next]) in here.into_iter().enumerate() {
+            let a = &mut rows[row * width + column];
+            let value = lanes.sub_mul(lanes.sub_mul(lanes.load(a), v, over_p), p, over_v);
+            *a = lanes.row(value);
+            sum = lanes.add_mul(sum, value, next);
+        }
+        product[column] = lanes.row(sum);
+    }
+}
+
+/// xᵀy.
+#[inline(always)]
+fn inner<L: Lanes>(lanes: L, x: &[Row], y: &[Row]) -> f64 {
+    let mut sum = lanes.zero();
+    for (x, y) in x.iter().zip(y) {
+        sum = lanes.add_mul(sum, lanes.load(x), lanes.load(y));
+    }
+    lanes.row(sum).iter().sum()
 }
 
 struct Ql<'a> {
@@ -205,7 +260,7 @@ mod tests {
             let full = a.clone();
             let per = n.div_ceil(WIDTH);
             let mut vectors = identity(n);
-            let values = eigen(&mut a, n, &mut vectors).unwrap();
+            let values = eigen(&a, n, &mut vectors).unwrap();
             let entry = |row: usize, column: usize| vectors[column * per + row / WIDTH][row % WIDTH];
             for (column, value) in values.iter().enumerate() {
                 for row in 0..n {
@@ -220,6 +275,6 @@ mod tests {
 
     #[test]
     fn not_finite_is_no_answer() {
-        assert_eq!(eigen(&mut [f64::NAN; 4], 2, &mut []), None);
+        assert_eq!(eigen(&[f64::NAN; 4], 2, &mut []), None);
     }
 }

@@ -160,30 +160,16 @@ fn entries(
     }
 }
 
-/// Writes the columns of M of one supernode in the order in which the solves read them: rows in groups of eight (the
-/// last group as many as there are), and in a group column by column. A group inside of the diagonal block has only
-/// the columns left of it, followed by its own strictly lower triangle by rows.
+/// Writes the columns of M of one supernode in the order in which the solves read them: in pieces of eight columns (the
+/// last one as many as there are), of each its strictly lower triangle by rows, then all rows below that.
 fn pack(front: &[f64], size: usize, width: usize, below: usize, values: &mut [f64]) {
-    let mut at = 0;
-    let mut group = |first: usize, count: usize, columns: usize| {
-        for column in 0..columns {
-            let from = column * size + first;
-            values[at..at + count].copy_from_slice(&front[from..from + count]);
-            at += count;
-        }
-        if first < width {
-            for row in 1..count {
-                for column in 0..row {
-                    values[at] = front[(first + column) * size + first + row];
-                    at += 1;
-                }
+    let mut to = values.iter_mut();
+    for first in (0..width).step_by(WIDTH) {
+        let end = (first + WIDTH).min(width);
+        for row in first + 1..width + below {
+            for (column, to) in (first..row.min(end)).zip(&mut to) {
+                *to = front[column * size + row];
             }
         }
-    };
-    for first in (0..width).step_by(WIDTH) {
-        group(first, WIDTH.min(width - first), first);
-    }
-    for first in (0..below).step_by(WIDTH) {
-        group(width + first, WIDTH.min(below - first), width);
     }
 }

@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::{Factor, Symbolic};
+use super::{Factor, Symbolic, symbolic::Piece};
 use crate::spectrum::{
     lanes::{Kernel, Lanes, Row, WIDTH, dispatch},
     poll::{Poll, Stop},
@@ -20,25 +20,37 @@ impl Factor {
     /// # Errors
     /// When cancelled.
     pub(in crate::spectrum) fn solve(&self, symbolic: &Symbolic, x: &mut [Row], poll: &mut Poll) -> Result<(), Stop> {
-        let nodes = symbolic.len();
+        let pieces = &symbolic.pieces;
+        let total = symbolic.values();
+        let value = |at: usize| pieces.get(at).map_or(total, |piece| piece.values);
         let mut start = 0;
-        while start < nodes {
-            let limit = symbolic.value_start[start] + CHUNK;
-            let end = symbolic.value_start.partition_point(|&at| at <= limit).clamp(start + 1, nodes);
-            dispatch(Forward { factor: self, symbolic, x, nodes: start..end });
-            poll.spend(WIDTH * (symbolic.value_start[end] - symbolic.value_start[start]))?;
+        while start < pieces.len() {
+            let limit = value(start) + CHUNK;
+            let end = pieces.partition_point(|piece| piece.values <= limit).max(start + 1);
+            dispatch(Forward { factor: self, symbolic, x, pieces: &pieces[start..end] });
+            poll.spend(WIDTH * (value(end) - value(start)))?;
             start = end;
         }
-        let mut end = nodes;
+        let mut end = pieces.len();
         while end > 0 {
-            let limit = symbolic.value_start[end].saturating_sub(CHUNK);
-            let start = symbolic.value_start.partition_point(|&at| at < limit).min(end - 1);
-            dispatch(Backward { factor: self, symbolic, x, nodes: start..end });
-            poll.spend(WIDTH * (symbolic.value_start[end] - symbolic.value_start[start]))?;
+            let limit = value(end).saturating_sub(CHUNK);
+            let start = pieces.partition_point(|piece| piece.values < limit).min(end - 1);
+            dispatch(Backward { factor: self, symbolic, x, pieces: &pieces[start..end] });
+            poll.spend(WIDTH * (value(end) - value(start)))?;
             end = start;
         }
         poll.charge(Cost::Solves);
         Ok(())
+    }
+
+    /// The order in which the columns of a supernode became pivots, if it is not their own.
+    #[inline(always)]
+    fn moved(&self, symbolic: &Symbolic, piece: &Piece) -> Option<(Range<usize>, &[u32])> {
+        let node = piece.node as usize;
+        (piece.first && self.moved[node]).then(|| {
+            let range = symbolic.begin[node] as usize..symbolic.begin[node + 1] as usize;
+            (range.clone(), &self.order[range])
+        })
     }
 }
 
@@ -46,7 +58,7 @@ struct Forward<'a> {
     factor: &'a Factor,
     symbolic: &'a Symbolic,
     x: &'a mut [Row],
-    nodes: Range<usize>,
+    pieces: &'a [Piece],
 }
 
 impl Kernel for Forward<'_> {
@@ -54,27 +66,20 @@ impl Kernel for Forward<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { factor, symbolic, x, nodes } = self;
-        let mut room = Vec::new();
-        for node in nodes {
-            let (begin, width, rows) = symbolic.node(node);
-            let (above, below) = x.split_at_mut(begin + width);
-            let own = &mut above[begin..];
-            if factor.moved[node] {
+        let Self { factor, symbolic, x, pieces } = self;
+        let mut room: Vec<Row> = Vec::new();
+        for piece in pieces {
+            if let Some((range, order)) = factor.moved(symbolic, piece) {
+                let own = &mut x[range];
                 room.clear();
                 room.extend_from_slice(own);
-                for (own, &was) in own.iter_mut().zip(&factor.order[begin..begin + width]) {
+                for (own, &was) in own.iter_mut().zip(order) {
                     *own = room[was as usize];
                 }
             }
-            let mut values = &factor.values[symbolic.value_start[node]..symbolic.value_start[node + 1]];
-            for first in (0..width).step_by(WIDTH) {
-                values = by_size(WIDTH.min(width - first), ForwardDiagonal { lanes, own, first, values });
-            }
-            for rows in rows.chunks(WIDTH) {
-                let shift = begin + width;
-                values = by_size(rows.len(), ForwardBelow { lanes, own, below, rows, shift, values });
-            }
+            let rows = &symbolic.piece_rows[piece.rows as usize..piece.end as usize];
+            let values = &factor.values[piece.values..];
+            by_size(piece.width, ForwardPiece { lanes, x, begin: piece.begin as usize, rows, values });
         }
     }
 }
@@ -83,7 +88,7 @@ struct Backward<'a> {
     factor: &'a Factor,
     symbolic: &'a Symbolic,
     x: &'a mut [Row],
-    nodes: Range<usize>,
+    pieces: &'a [Piece],
 }
 
 impl Kernel for Backward<'_> {
@@ -91,31 +96,18 @@ impl Kernel for Backward<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { factor, symbolic, x, nodes } = self;
+        let Self { factor, symbolic, x, pieces } = self;
         let mut room: Vec<Row> = Vec::new();
-        for node in nodes.rev() {
-            let (begin, width, rows) = symbolic.node(node);
-            let (above, below) = x.split_at_mut(begin + width);
-            let own = &mut above[begin..];
-            for (row, &inverse) in own.iter_mut().zip(&factor.inverse[begin..begin + width]) {
-                *row = lanes.row(lanes.mul(lanes.load(row), lanes.splat(inverse)));
-            }
-            let all = &factor.values[symbolic.value_start[node]..symbolic.value_start[node + 1]];
-            let (mut diagonal, mut values) = all.split_at(width * (width - 1) / 2);
-            for rows in rows.chunks(WIDTH) {
-                let shift = begin + width;
-                values = by_size(rows.len(), BackwardBelow { lanes, own, below, rows, shift, values });
-            }
-            for first in (0..width).step_by(WIDTH).rev() {
-                let count = WIDTH.min(width - first);
-                let (rest, values) = diagonal.split_at(diagonal.len() - count * first - count * (count - 1) / 2);
-                diagonal = rest;
-                by_size(count, BackwardDiagonal { lanes, own, first, values });
-            }
-            if factor.moved[node] {
+        for piece in pieces.iter().rev() {
+            let rows = &symbolic.piece_rows[piece.rows as usize..piece.end as usize];
+            let values = &factor.values[piece.values..];
+            let (begin, inverse) = (piece.begin as usize, &factor.inverse[piece.begin as usize..]);
+            by_size(piece.width, BackwardPiece { lanes, x, begin, rows, values, inverse });
+            if let Some((range, order)) = factor.moved(symbolic, piece) {
+                let own = &mut x[range];
                 room.clear();
                 room.extend_from_slice(own);
-                for (room, &was) in room.iter().zip(&factor.order[begin..begin + width]) {
+                for (room, &was) in room.iter().zip(order) {
                     own[was as usize] = *room;
                 }
             }
@@ -123,152 +115,96 @@ impl Kernel for Backward<'_> {
     }
 }
 
-/// Work on a group of rows whose number is known to the compiler.
-trait Group<'a> {
-    fn run<const R: usize>(self) -> &'a [f64];
+/// Work on a piece: so many columns that the compiler knows.
+///
+/// Most supernodes have a few columns and a handful of rows. What their solves cost is less the arithmetic than what
+/// comes before it and jumps that cannot be foretold, so that there is one jump for the number of columns, and then
+/// one loop over rows.
+trait Columns {
+    fn run<const W: usize>(self);
 }
 
-/// Calls the group of the given size, 1 to 8; returns the values that it has not used.
+/// Calls the piece of the given size, 1 to 8.
 #[inline(always)]
-fn by_size<'a, G: Group<'a>>(size: usize, group: G) -> &'a [f64] {
+fn by_size(size: u32, piece: impl Columns) {
     match size {
-        1 => group.run::<1>(),
-        2 => group.run::<2>(),
-        3 => group.run::<3>(),
-        4 => group.run::<4>(),
-        5 => group.run::<5>(),
-        6 => group.run::<6>(),
-        7 => group.run::<7>(),
-        _ => group.run::<8>(),
+        1 => piece.run::<1>(),
+        2 => piece.run::<2>(),
+        3 => piece.run::<3>(),
+        4 => piece.run::<4>(),
+        5 => piece.run::<5>(),
+        6 => piece.run::<6>(),
+        7 => piece.run::<7>(),
+        _ => piece.run::<8>(),
     }
 }
 
-/// Σ over the columns of the group's entries times the solved rows.
-#[inline(always)]
-fn gather<L: Lanes, const R: usize>(lanes: L, own: &[Row], values: &[[f64; R]]) -> [L::Reg; R] {
-    let mut sum = [lanes.zero(); R];
-    for (x, entries) in own.iter().zip(values) {
-        let x = lanes.load(x);
-        for (sum, &entry) in sum.iter_mut().zip(entries) {
-            *sum = lanes.add_mul(*sum, lanes.splat(entry), x);
-        }
-    }
-    sum
-}
-
-/// Subtracts from each of the rows the group's entries of that column times the solved group.
-#[inline(always)]
-fn spread<L: Lanes, const R: usize>(lanes: L, own: &mut [Row], values: &[[f64; R]], solved: [L::Reg; R]) {
-    for (x, entries) in own.iter_mut().zip(values) {
-        // Two chains hide the latency of half of the multiplications.
-        let mut even = lanes.load(x);
-        let mut odd = lanes.zero();
-        for (at, (&solved, &entry)) in solved.iter().zip(entries).enumerate() {
-            if at % 2 == 0 {
-                even = lanes.sub_mul(even, lanes.splat(entry), solved);
-            } else {
-                odd = lanes.add_mul(odd, lanes.splat(entry), solved);
-            }
-        }
-        *x = lanes.row(if R > 1 { lanes.sub(even, odd) } else { even });
-    }
-}
-
-struct ForwardDiagonal<'a, 'x, L> {
+struct ForwardPiece<'a, L> {
     lanes: L,
-    own: &'x mut [Row],
-    first: usize,
+    x: &'a mut [Row],
+    begin: usize,
+    rows: &'a [u32],
     values: &'a [f64],
 }
 
-impl<'a, L: Lanes> Group<'a> for ForwardDiagonal<'a, '_, L> {
+impl<L: Lanes> Columns for ForwardPiece<'_, L> {
     #[inline(always)]
-    fn run<const R: usize>(self) -> &'a [f64] {
-        let Self { lanes, own, first, values } = self;
-        let (block, rest) = values.split_at(first * R);
-        let (triangle, rest) = rest.split_at(R * (R - 1) / 2);
-        let (solved, group) = own.split_at_mut(first);
-        let sum = gather::<L, R>(lanes, solved, block.as_chunks().0);
-        let mut x: [L::Reg; R] = std::array::from_fn(|at| lanes.sub(lanes.load(&group[at]), sum[at]));
-        for row in 1..R {
+    fn run<const W: usize>(self) {
+        let Self { lanes, x, begin, rows, values } = self;
+        let (triangle, values) = values.split_at(W * (W - 1) / 2);
+        let own = &mut x[begin..begin + W];
+        let mut solved: [L::Reg; W] = std::array::from_fn(|at| lanes.load(&own[at]));
+        for row in 1..W {
             for column in 0..row {
-                x[row] = lanes.sub_mul(x[row], lanes.splat(triangle[row * (row - 1) / 2 + column]), x[column]);
+                let entry = lanes.splat(triangle[row * (row - 1) / 2 + column]);
+                solved[row] = lanes.sub_mul(solved[row], entry, solved[column]);
             }
         }
-        for (row, x) in group.iter_mut().zip(x) {
-            *row = lanes.row(x);
+        for (row, solved) in own.iter_mut().zip(solved) {
+            *row = lanes.row(solved);
         }
-        rest
+        for (&row, entries) in rows.iter().zip(values.as_chunks::<W>().0) {
+            let row = &mut x[row as usize];
+            let mut sum = lanes.load(row);
+            for (&entry, &solved) in entries.iter().zip(&solved) {
+                sum = lanes.sub_mul(sum, lanes.splat(entry), solved);
+            }
+            *row = lanes.row(sum);
+        }
     }
 }
 
-struct BackwardDiagonal<'a, 'x, L> {
+struct BackwardPiece<'a, L> {
     lanes: L,
-    own: &'x mut [Row],
-    first: usize,
+    x: &'a mut [Row],
+    begin: usize,
+    rows: &'a [u32],
     values: &'a [f64],
+    inverse: &'a [f64],
 }
 
-impl<'a, L: Lanes> Group<'a> for BackwardDiagonal<'a, '_, L> {
+impl<L: Lanes> Columns for BackwardPiece<'_, L> {
     #[inline(always)]
-    fn run<const R: usize>(self) -> &'a [f64] {
-        let Self { lanes, own, first, values } = self;
-        let (block, rest) = values.split_at(first * R);
-        let (triangle, rest) = rest.split_at(R * (R - 1) / 2);
-        let (earlier, group) = own.split_at_mut(first);
-        let mut x: [L::Reg; R] = std::array::from_fn(|at| lanes.load(&group[at]));
-        for row in (1..R).rev() {
+    fn run<const W: usize>(self) {
+        let Self { lanes, x, begin, rows, values, inverse } = self;
+        let (triangle, values) = values.split_at(W * (W - 1) / 2);
+        let own = &x[begin..begin + W];
+        let inverse = &inverse[..W];
+        let mut sum: [L::Reg; W] = std::array::from_fn(|at| lanes.mul(lanes.load(&own[at]), lanes.splat(inverse[at])));
+        for (&row, entries) in rows.iter().zip(values.as_chunks::<W>().0) {
+            let row = lanes.load(&x[row as usize]);
+            for (sum, &entry) in sum.iter_mut().zip(entries) {
+                *sum = lanes.sub_mul(*sum, lanes.splat(entry), row);
+            }
+        }
+        for row in (1..W).rev() {
             for column in 0..row {
-                x[column] = lanes.sub_mul(x[column], lanes.splat(triangle[row * (row - 1) / 2 + column]), x[row]);
+                let entry = lanes.splat(triangle[row * (row - 1) / 2 + column]);
+                sum[column] = lanes.sub_mul(sum[column], entry, sum[row]);
             }
         }
-        for (row, x) in group.iter_mut().zip(x) {
-            *row = lanes.row(x);
+        for (row, sum) in x[begin..begin + W].iter_mut().zip(sum) {
+            *row = lanes.row(sum);
         }
-        spread::<L, R>(lanes, earlier, block.as_chunks().0, x);
-        rest
-    }
-}
-
-struct ForwardBelow<'a, 'x, L> {
-    lanes: L,
-    own: &'x [Row],
-    below: &'x mut [Row],
-    rows: &'x [u32],
-    shift: usize,
-    values: &'a [f64],
-}
-
-impl<'a, L: Lanes> Group<'a> for ForwardBelow<'a, '_, L> {
-    #[inline(always)]
-    fn run<const R: usize>(self) -> &'a [f64] {
-        let Self { lanes, own, below, rows, shift, values } = self;
-        let (block, rest) = values.split_at(own.len() * R);
-        let sum = gather::<L, R>(lanes, own, block.as_chunks().0);
-        for (&row, sum) in rows.iter().zip(sum) {
-            let row = &mut below[row as usize - shift];
-            *row = lanes.row(lanes.sub(lanes.load(row), sum));
-        }
-        rest
-    }
-}
-
-struct BackwardBelow<'a, 'x, L> {
-    lanes: L,
-    own: &'x mut [Row],
-    below: &'x [Row],
-    rows: &'x [u32],
-    shift: usize,
-    values: &'a [f64],
-}
-
-impl<'a, L: Lanes> Group<'a> for BackwardBelow<'a, '_, L> {
-    #[inline(always)]
-    fn run<const R: usize>(self) -> &'a [f64] {
-        let Self { lanes, own, below, rows, shift, values } = self;
-        let (block, rest) = values.split_at(own.len() * R);
-        let x: [L::Reg; R] = std::array::from_fn(|at| lanes.load(&below[rows[at] as usize - shift]));
-        spread::<L, R>(lanes, own, block.as_chunks().0, x);
-        rest
     }
 }

@@ -5,6 +5,7 @@
 use super::order::{ROOT, column_counts, elimination_tree};
 use crate::{
     laplacian::Symmetric,
+    spectrum::lanes::WIDTH,
     watch::{Pulse, Stopped},
 };
 
@@ -28,10 +29,31 @@ pub(in crate::spectrum) struct Symbolic {
     pub first: Vec<u32>,
     /// Where the packed values of each supernode start.
     pub value_start: Vec<usize>,
+    /// What the solves go through, in the order of their values.
+    pub(super) pieces: Vec<Piece>,
+    /// The rows below the diagonal blocks of the pieces.
+    pub(super) piece_rows: Vec<u32>,
     /// The largest front, in rows.
     pub front: usize,
     /// The most numbers that waiting update matrices hold together.
     pub stack: usize,
+}
+
+/// At most eight columns of a supernode, so that a solve can hold their rows in registers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    /// First column and number of columns.
+    pub begin: u32,
+    pub width: u32,
+    /// Its rows below its diagonal block in `piece_rows`: the other columns of the supernode, then its rows.
+    pub rows: u32,
+    pub end: u32,
+    /// Where its values start.
+    pub values: usize,
+    /// The supernode.
+    pub node: u32,
+    /// Whether it is the supernode's first.
+    pub first: bool,
 }
 
 impl Symbolic {
@@ -143,12 +165,54 @@ impl Symbolic {
             height += below * (below + 1) / 2;
             stack = stack.max(height);
         }
+        let (pieces, piece_rows) = pieces(&begin, &row_start, &rows, &value_start);
         // While a front is assembled its children still wait, and its own update is pushed after they are gone.
-        Ok(Self { begin, row_start, rows, relative, entry, children, first, value_start, front, stack })
+        Ok(Self {
+            begin,
+            row_start,
+            rows,
+            relative,
+            entry,
+            children,
+            first,
+            value_start,
+            pieces,
+            piece_rows,
+            front,
+            stack,
+        })
     }
 }
 
-/// Columns with nested patterns, then merged with their parents while few zeros are stored for it.
+/// Cuts the supernodes into pieces; also lists their rows.
+fn pieces(begin: &[u32], row_start: &[usize], rows: &[u32], value_start: &[usize]) -> (Vec<Piece>, Vec<u32>) {
+    let (mut pieces, mut list) = (Vec::new(), Vec::new());
+    for node in 0..begin.len() - 1 {
+        let mut values = value_start[node];
+        let below = &rows[row_start[node]..row_start[node + 1]];
+        for first in (begin[node]..begin[node + 1]).step_by(WIDTH) {
+            let end = (first + WIDTH as u32).min(begin[node + 1]);
+            let start = list.len() as u32;
+            list.extend(end..begin[node + 1]);
+            list.extend_from_slice(below);
+            pieces.push(Piece {
+                begin: first,
+                width: end - first,
+                rows: start,
+                end: list.len() as u32,
+                values,
+                node: node as u32,
+                first: first == begin[node],
+            });
+            let width = (end - first) as usize;
+            values += width * (width - 1) / 2 + width * (list.len() - start as usize);
+        }
+    }
+    (pieces, list)
+}
+
+/// Columns with nested patterns, then merged with their parents while few zeros are stored for it. Of small supernodes
+/// many may be: a solve spends more on coming to another supernode than on some fifty zeros.
 fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
     struct Node {
         begin: usize,
@@ -179,8 +243,9 @@ fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
             let size = width * (width + 1) / 2 + width * node.below;
             let share = zeros as f64 / size as f64;
             let merge = match width {
-                0..=4 => share < 0.8,
-                5..=16 => share < 0.25,
+                0..=4 => share < 0.9,
+                5..=8 => share < 0.6,
+                9..=16 => share < 0.3,
                 17..=48 => share < 0.1,
                 _ => share < 0.05,
             };

@@ -96,7 +96,7 @@ fn dependent_columns_are_replaced() {
         row[7] = 0.0;
     }
     let before = krylov.scratch.work.rows().to_vec();
-    let upper = krylov.normalise(0, STRICTLY, &mut poll).unwrap();
+    let upper = krylov.normalise(0, &mut poll).unwrap();
     let gram =
         dispatch(Multiply { mass: &pencil.mass, x: krylov.scratch.next.rows(), to: krylov.scratch.mass.rows_mut() });
     for (i, row) in gram.iter().enumerate() {
