@@ -116,6 +116,12 @@ impl HalfEdges {
         self.start[prev(h) as usize]
     }
 
+    /// The corners of the triangle whose first half-edge is `h`.
+    pub fn corners(&self, h: u32) -> [u32; 3] {
+        let h = h as usize;
+        [self.start[h], self.start[h + 1], self.start[h + 2]]
+    }
+
     pub fn point(&self, a: u32) -> V3 {
         self.points[a as usize]
     }
@@ -234,15 +240,33 @@ impl HalfEdges {
     /// Whether the ends of the edge have no common neighbour but the two across it, so that the surface stays a
     /// manifold when they become one vertex; and none of the two across falls below four neighbours.
     pub fn can_collapse(&self, h: u32) -> bool {
+        self.can_collapse_to(h, 4)
+    }
+
+    /// The same with so many neighbours, at least 3.
+    pub fn can_collapse_to(&self, h: u32, least: usize) -> bool {
         let (a, b) = (self.start(h), self.end(h));
         let (c, d) = (self.apex(h), self.apex(self.twin(h)));
-        let common = self.neighbours(a).filter(|&x| self.neighbours(b).any(|y| y == x)).count();
-        common == 2
-            && c != d
-            && self.degree(c) > 4
-            && self.degree(d) > 4
-            && self.degree(a) + self.degree(b) >= 8
-            && self.live > 8
+        let more = |x: u32| self.around(x).nth(least).is_some();
+        if c == d || self.live <= 8 || !more(c) || !more(d) {
+            return false;
+        }
+        // Most vertices have fewer neighbours than this.
+        let (mut ring, mut seen) = ([GONE; 16], 0);
+        for x in self.neighbours(b) {
+            if let Some(slot) = ring.get_mut(seen) {
+                *slot = x;
+            }
+            seen += 1;
+        }
+        let is_beside_b =
+            |x: u32| if seen <= ring.len() { ring.contains(&x) } else { self.neighbours(b).any(|y| y == x) };
+        let (mut common, mut degree) = (0, 0);
+        for x in self.neighbours(a) {
+            common += usize::from(is_beside_b(x));
+            degree += 1;
+        }
+        common == 2 && degree + seen >= 4 + least
     }
 
     /// Makes the edge's start one with its end, which moves to `at`.

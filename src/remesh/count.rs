@@ -2,7 +2,8 @@
 
 use super::{
     RemeshError,
-    work::{Kind, LONG, SLIVER, Work},
+    shape::SLIVER,
+    work::{Kind, LONG, Work},
 };
 
 impl Work<'_> {
@@ -10,34 +11,36 @@ impl Work<'_> {
     pub(super) fn reach(&mut self, count: usize) -> Result<(), RemeshError> {
         while self.count() < count {
             let before = self.count();
-            let edges = self.edges_by_length();
             // Not all of one pass: their halves may be longer than the next.
-            let share = (count - self.count()).min(edges.len().div_ceil(8));
-            for &(length2, h) in edges.iter().rev().take(share) {
+            let share = (count - before).min(self.mesh.slots() as usize / 48 + 1);
+            for (length2, h) in self.edges_by_length(share, true) {
                 self.look(h)?;
-                if self.length2(h) == length2 {
+                if self.stretch2(h) == length2 {
                     self.try_split(h);
                 }
             }
             // Where every split would fold the mesh, the fold is there already.
             self.loose = self.count() == before;
         }
-        let mut longest = LONG * self.length;
+        let (mut longest, mut share) = (LONG, 4_usize);
         while self.count() > count {
             let before = self.count();
-            for (length2, h) in self.edges_by_length() {
+            for (length2, h) in self.edges_by_length(share.saturating_mul(before - count + 16), false) {
                 self.look(h)?;
                 if self.count() == count {
                     return Ok(());
                 }
-                if self.mesh.has(h) && self.length2(h) == length2 {
+                if self.mesh.has(h) && self.stretch2(h) == length2 {
                     self.try_collapse(h, longest, SLIVER);
                 }
             }
             if self.count() == before {
-                // What held the rest: that edges would be long, that creases would go, that triangles would be bad.
-                if longest.is_finite() {
-                    longest = if longest > 8.0 * self.length { f64::INFINITY } else { 1.5 * longest };
+                // What held the rest: that few were looked at, that edges would be long, that creases would go, that
+                // triangles would be bad.
+                if share < usize::MAX {
+                    share = usize::MAX;
+                } else if longest.is_finite() {
+                    longest = if longest > 8.0 { f64::INFINITY } else { 1.5 * longest };
                 } else if !self.loose {
                     self.loosen();
                 } else {
@@ -77,11 +80,22 @@ impl Work<'_> {
         self.is_ghost(self.mesh.apex(h)) || self.is_ghost(self.mesh.apex(self.mesh.twin(h)))
     }
 
-    /// The squared lengths of all edges, ascending.
-    fn edges_by_length(&self) -> Vec<(f64, u32)> {
-        let edges = (0..self.mesh.slots()).filter(|&h| self.is_edge(h));
-        let mut edges: Vec<_> = edges.map(|h| (self.length2(h), h)).collect();
-        edges.sort_unstable_by(|(x, h), (y, o)| x.total_cmp(y).then(h.cmp(o)));
+    /// The so many longest edges, or shortest, with their squared lengths over those aimed at: these first.
+    fn edges_by_length(&self, share: usize, longest: bool) -> Vec<(f64, u32)> {
+        // Where not all are wanted, those that are on the right side of the length aimed at will do.
+        let some = share < self.mesh.slots() as usize;
+        let edges = (0..self.mesh.slots())
+            .filter(|&h| self.is_edge(h) && !(some && longest != (self.length2(h) > self.aim2(h))));
+        let mut edges: Vec<_> = edges.map(|h| (self.stretch2(h), h)).collect();
+        let by_length = |x: &(f64, u32), y: &(f64, u32)| {
+            let order = x.0.total_cmp(&y.0).then(x.1.cmp(&y.1));
+            if longest { order.reverse() } else { order }
+        };
+        if share < edges.len() {
+            edges.select_nth_unstable_by(share, by_length);
+            edges.truncate(share);
+        }
+        edges.sort_unstable_by(by_length);
         edges
     }
 }

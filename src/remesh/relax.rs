@@ -8,10 +8,18 @@ use crate::mesh::vector::V3;
 
 /// The share of the gaps that mends the area of a ball.
 const SHARE: f64 = 0.625;
+/// The greatest share of the gaps.
+const GREATEST: f64 = 4.0;
 
 impl Work<'_> {
     /// Moves every vertex once, one after the other.
     pub(super) fn relax(&mut self) -> Result<(), RemeshError> {
+        let inverse = 1.0 / self.length;
+        let weight = |a| {
+            let share = self.size(a) * inverse;
+            1.0 / (share * share * share * share)
+        };
+        let weights: Vec<f64> = (0..self.mesh.vertex_slots()).map(weight).collect();
         for a in 0..self.mesh.vertex_slots() {
             self.look(a)?;
             if !self.mesh.has_vertex(a) || self.is_ghost(a) {
@@ -23,12 +31,13 @@ impl Work<'_> {
                     let Some(middle) = self.middle_of_crease(a) else { continue };
                     self.surface.nearest_on_crease(middle, self.sides[a as usize])
                 }
-                Kind::Free => self.surface.nearest(self.middle(a), self.sides[a as usize]),
+                Kind::Free => self.surface.nearest(self.middle(a, &weights), self.sides[a as usize]),
             };
             if self.may_move(a, spot.at, spot.normal) {
                 self.mesh.points[a as usize] = spot.at;
                 self.sides[a as usize] = spot.side;
                 self.normals[a as usize] = spot.normal;
+                self.limits[a as usize] = spot.limit;
             }
         }
         Ok(())
@@ -38,8 +47,9 @@ impl Work<'_> {
     /// so that the area is the surface's.
     ///
     /// With all vertices on a curved surface the triangles are chords, and the area of a ball of radius r comes out too
-    /// small by 5/24 (length/r)². The share that mends that is 5/8 of the mean gap at the triangles' centres; it is
-    /// found by a secant, and bounded for what was lost otherwise.
+    /// small by 5/24 (length/r)². The share that mends that is 5/8 of the mean gap at the triangles' centres. On relief
+    /// that is finer than the triangles it is more, and makes what is left of the relief stronger. It is found by two
+    /// secants, and bounded where more than relief was lost.
     pub(super) fn balance(&mut self) -> Result<(), RemeshError> {
         let wanted = self.surface.area();
         let shifts = self.shifts()?;
@@ -49,7 +59,11 @@ impl Work<'_> {
             triangles.map(|[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm()).sum()
         };
         let (now, then) = (area(0.0), area(SHARE));
-        let share = if then > now { (SHARE * (wanted - now) / (then - now)).clamp(0.0, 1.0) } else { 0.0 };
+        let secant = |share: f64, then: f64| {
+            if then > now { (share * (wanted - now) / (then - now)).clamp(0.0, GREATEST) } else { 0.0 }
+        };
+        let first = secant(SHARE, then);
+        let share = secant(first, area(first));
         for (point, shift) in self.mesh.points.iter_mut().zip(shifts) {
             *point = *point + shift * share;
         }
@@ -77,22 +91,25 @@ impl Work<'_> {
                 weights[a as usize] += area;
             }
         }
-        let limit = 0.25 * self.length;
         let shift = |a: usize| match self.kinds[a] {
-            Kind::Free if weights[a] > 0.0 => self.normals[a] * (gaps[a] / weights[a]).clamp(-limit, limit),
+            Kind::Free if weights[a] > 0.0 => {
+                self.normals[a] * (gaps[a] / weights[a]).clamp(-0.25 * self.size(a as u32), 0.25 * self.size(a as u32))
+            }
             _ => V3::default(),
         };
         Ok((0..slots).map(shift).collect())
     }
 
     /// The centre of mass of the triangles around a free vertex, in its tangent plane.
-    fn middle(&self, a: u32) -> V3 {
+    fn middle(&self, a: u32, weights: &[f64]) -> V3 {
         let here = self.mesh.point(a);
         let (mut sum, mut weight, mut normal) = (V3::default(), 0.0, V3::default());
         for h in self.mesh.around(a) {
             let (u, w) = (self.mesh.point(self.mesh.end(h)) - here, self.mesh.point(self.mesh.apex(h)) - here);
             let cross = u.cross(w);
-            let area = cross.norm();
+            // Centroidal cells have sizes s where the density is s⁻⁴.
+            let dense = weights[a as usize] + weights[self.mesh.end(h) as usize] + weights[self.mesh.apex(h) as usize];
+            let area = cross.norm() * dense;
             sum = sum + (u + w) * area;
             weight += area;
             normal = normal + cross;

@@ -18,6 +18,8 @@ pub(super) struct Surface {
     normals: Vec<V3>,
     /// The vertices where creases meet, bend or end.
     corners: Vec<bool>,
+    /// The greatest length of an edge at each vertex.
+    limits: Vec<f64>,
 }
 
 /// A point of the surface.
@@ -27,6 +29,8 @@ pub(super) struct Spot {
     pub(super) side: u32,
     pub(super) at: V3,
     pub(super) normal: V3,
+    /// The greatest length of an edge there.
+    pub(super) limit: f64,
 }
 
 /// The nearest point of one triangle.
@@ -41,7 +45,8 @@ impl Surface {
     /// The surface of a mesh that has `faces` triangles and those of its ghosts after them; without creases yet.
     pub(super) fn new(mesh: HalfEdges, faces: u32) -> Self {
         let count = mesh.vertex_slots() as usize;
-        let mut surface = Self { mesh, faces, normals: Vec::new(), corners: vec![false; count] };
+        let mut surface =
+            Self { mesh, faces, normals: Vec::new(), corners: vec![false; count], limits: vec![0.0; count] };
         let mut normals = vec![V3::default(); count];
         for face in 0..faces {
             let normal = surface.face_normal(face);
@@ -59,10 +64,36 @@ impl Surface {
         (0..self.faces).map(|face| 0.5 * self.face_normal(face).norm()).sum()
     }
 
+    /// A third of the area of the triangles around each vertex.
+    pub(super) fn areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.mesh.vertex_slots() as usize];
+        for face in 0..self.faces {
+            let share = self.face_normal(face).norm() / 6.0;
+            for h in 3 * face..3 * face + 3 {
+                areas[self.mesh.start(h) as usize] += share;
+            }
+        }
+        areas
+    }
+
     /// The normal of a triangle, as long as twice its area.
     pub(super) fn face_normal(&self, face: u32) -> V3 {
-        let [p, q, r] = [0, 1, 2].map(|corner| self.mesh.point(self.mesh.start(3 * face + corner)));
-        (q - p).cross(r - p)
+        let [a, b, c] = self.mesh.corners(3 * face);
+        let p = self.mesh.point(a);
+        (self.mesh.point(b) - p).cross(self.mesh.point(c) - p)
+    }
+
+    pub(super) fn face_count(&self) -> u32 {
+        self.faces
+    }
+
+    /// The greatest length of an edge at a vertex.
+    pub(super) fn limit(&self, a: u32) -> f64 {
+        self.limits[a as usize]
+    }
+
+    pub(super) fn set_limits(&mut self, limits: Vec<f64>) {
+        self.limits = limits;
     }
 
     pub(super) fn is_corner(&self, a: u32) -> bool {
@@ -132,7 +163,10 @@ impl Surface {
             let Some(found) = better else { break };
             (face, near) = found;
         }
-        Spot { side: 3 * face, at: near.at, normal: self.normal_in(face, near.share) }
+        let [x, y, z] = near.share;
+        let [a, b, c] = self.mesh.corners(3 * face);
+        let limit = self.limit(a) * x + self.limit(b) * y + self.limit(c) * z;
+        Spot { side: 3 * face, at: near.at, normal: self.normal_in(face, near.share), limit }
     }
 
     /// The normal within a triangle: between those of its corners; a corner on a crease has the triangle's own.
@@ -155,8 +189,9 @@ impl Surface {
     /// The nearest point of a triangle (Ericson, *Real-Time Collision Detection*, 5.1.5). Of a triangle without an
     /// area, one of its sides.
     fn near(&self, face: u32, p: V3) -> Near {
-        let [a, b, c] = [0, 1, 2].map(|corner| self.mesh.point(self.mesh.start(3 * face + corner)));
-        let (share, at) = nearest_of_triangle(p, [a, b, c]);
+        let [a, b, c] = self.mesh.corners(3 * face);
+        let corners = [self.mesh.point(a), self.mesh.point(b), self.mesh.point(c)];
+        let (share, at) = nearest_of_triangle(p, corners);
         let off = p - at;
         Near { at, share, distance2: off.dot(off) }
     }
@@ -190,7 +225,8 @@ impl Surface {
         }
         let normals = [h, self.mesh.twin(h)]
             .map(|side| if self.is_real(side) { self.face_normal(side / 3).unit() } else { V3::default() });
-        Spot { side: self.real(h), at, normal: (normals[0] + normals[1]).unit() * FAINT }
+        let [one, two] = [self.mesh.start(h), self.mesh.end(h)].map(|a| self.limit(a));
+        Spot { side: self.real(h), at, normal: (normals[0] + normals[1]).unit() * FAINT, limit: one + (two - one) * t }
     }
 
     /// The creases from a vertex.

@@ -244,6 +244,50 @@ fn it_can_be_cancelled_at_any_time() {
     }
 }
 
+/// A ball with a thin limb: of radius 1, and from its pole a tube of `radius` that ends in a tip.
+fn limb(radius: f64) -> Mesh {
+    grid_with_poles(16, 60, |u, w| {
+        let around = u * TAU;
+        // Half of the rows are on the ball, up to where the limb begins.
+        let (r, z) = if w < 0.5 {
+            let turn = 2.0 * w * (TAU / 2.0 - radius);
+            (turn.sin(), -turn.cos())
+        } else {
+            let along = 2.0 * w - 1.0;
+            (radius * (1.0 - along.powi(8)).max(0.02), (1.0 - radius * radius).sqrt() + 1.5 * along)
+        };
+        [r * around.cos(), r * around.sin(), z]
+    })
+}
+
+/// A sphere-like grid of m × n vertices without poles, and a vertex for each pole.
+fn grid_with_poles(m: u32, n: u32, at: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
+    let mesh = grid(m, n, false, |u, w| at(u, (w * f64::from(n - 1) + 0.5) / f64::from(n)));
+    let (mut vertices, mut triangles) = (mesh.vertices().to_vec(), mesh.triangles().to_vec());
+    vertices.extend([at(0.0, 0.0), at(0.0, 1.0)].map(|[_, _, z]| [0.0, 0.0, z]));
+    for i in 0..m {
+        let (here, there) = (i * n, (i + 1) % m * n);
+        triangles.push([here, m * n, there]);
+        triangles.push([here + n - 1, there + n - 1, m * n + 1]);
+    }
+    Mesh::new(vertices, triangles)
+}
+
+#[test]
+fn thin_limbs_keep_their_tips() {
+    // An even mesh of 1 000 vertices has edges of 0.13: the thinnest limb is half as thick as they are long.
+    for radius in [0.1, 0.05, 0.03] {
+        let mesh = limb(radius);
+        let result = remeshed(&mesh, 1000);
+        let tip = |mesh: &Mesh| mesh.vertices().iter().map(|p| p[2]).fold(0.0, f64::max);
+        assert!((tip(&mesh) - tip(&result)).abs() < 0.06, "{radius}: {} {}", tip(&mesh), tip(&result));
+        let fidelity = quality::fidelity(&mesh, &result, 20_000).unwrap();
+        assert!(fidelity.hausdorff() < 0.015 && fidelity.area_change.abs() < 0.002, "{radius}: {fidelity:?}");
+        let shape = quality::shape(&result);
+        assert!(shape.angle_1 > 25.0 && shape.least_angle > 10.0, "{radius}: {shape:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
