@@ -11,7 +11,7 @@ pub use self::{
     first_k::{Curve, FirstK, first_k},
     honest::{Honest, HonestPair, HonestRow, Interval, Learner, Plan, honest, mcnemar},
     retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
-    tables::{Cell, Table, tables},
+    tables::{Cell, Table, tables, tables_of},
     why::Method,
 };
 pub use crate::metrics::Sample;

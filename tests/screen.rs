@@ -452,6 +452,25 @@ fn what_is_stale_is_faint_and_says_so() {
 }
 
 #[test]
+fn a_table_is_settled_as_soon_as_its_own_parts_are_there() {
+    let mut answer = sample::full();
+    // First-k has come; the climbs and AdaBoost are on their way.
+    for stale in [&mut answer.climb_error.stale, &mut answer.climb_adr.stale, &mut answer.tables.stale] {
+        *stale = true;
+    }
+    answer.boosted = eigenselect::query::Part::default();
+    let state = shown(sample::state(answer), View::Tables);
+    compare("Tables-arriving", &drawn(&state, MEDIUM));
+    let lines = drawn(&state, MEDIUM);
+    let title = |number: u32| lines.lines().find(|line| line.contains(&format!("Table {number}:"))).unwrap().to_owned();
+    assert_eq!([1, 2, 3, 4].map(|number| title(number).contains('◌')), [false, true, true, true]);
+    // A press of k is read off the curves at once, without the engine.
+    let mut turned = state.clone();
+    update(&mut turned, Action::Set(Parameter::K, "7".to_owned()));
+    assert!(drawn(&turned, MEDIUM).contains("k=7"), "{}", drawn(&turned, MEDIUM));
+}
+
+#[test]
 fn without_colour_nothing_is_coloured() {
     let look = Look { colour: false, ..Look::default() };
     for view in View::ALL {

@@ -54,16 +54,23 @@ fn text(words: &str) -> Cell {
 }
 
 /// The first-k figures: at the best k, then at the k that was chosen.
-fn first_k_row(curve: &Curve, best: usize, k: usize) -> Vec<Cell> {
+fn first_k_row(curve: Option<(&Curve, usize)>, k: usize) -> Vec<Cell> {
+    let Some((curve, best)) = curve else { return missing("first-k", 6) };
     let at_best = scored(curve.at(best), if best == 0 { Cell::Missing } else { Cell::Count(best as u64) });
     let chosen = curve.at(k);
     let at_chosen = [figure(chosen.map(|score| score.train)), figure(chosen.and_then(|score| score.query))];
     [text("first-k")].into_iter().chain(at_best).chain(at_chosen).collect()
 }
 
-fn hill_row(score: Score, climbed: &Climbed) -> Vec<Cell> {
+fn hill_row(climbed: Option<(Score, &Climbed)>) -> Vec<Cell> {
+    let Some((score, climbed)) = climbed else { return missing("HCBw", 4) };
     let count = Cell::Count(climbed.climb.selected.len() as u64);
     [text("HCBw")].into_iter().chain(scored(Some(score), count)).collect()
+}
+
+/// The row of a method whose figures are not there.
+fn missing(method: &str, columns: usize) -> Vec<Cell> {
+    std::iter::once(text(method)).chain(vec![Cell::Missing; columns - 1]).collect()
 }
 
 fn table(number: u32, title: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Table {
@@ -84,26 +91,41 @@ pub fn tables(
     rounds: usize,
     sel: SelCount,
 ) -> Vec<Table> {
+    tables_of(Some(first_k), Some(climb_error), Some(climb_adr), Some(boosted), k, rounds, sel)
+}
+
+/// As [`tables`], of the parts that are there: the figures of the others are missing.
+#[must_use]
+pub fn tables_of(
+    first_k: Option<&FirstK>,
+    climb_error: Option<&Climbed>,
+    climb_adr: Option<&Climbed>,
+    boosted: Option<&Boosted>,
+    k: usize,
+    rounds: usize,
+    sel: SelCount,
+) -> Vec<Table> {
     let at = |figure: &str, side: &str| format!("{figure} on {side}, k = {k}");
     let (sel_head, mean) = match sel {
-        SelCount::Chosen => ("mean sel (chosen)", boosted.mean_chosen),
-        SelCount::Ties => ("mean sel (ties)", boosted.mean_ties),
+        SelCount::Chosen => ("mean sel (chosen)", boosted.map(|boosted| boosted.mean_chosen)),
+        SelCount::Ties => ("mean sel (ties)", boosted.map(|boosted| boosted.mean_ties)),
     };
-    let boosted_cells = scored(Some(boosted.error), Cell::Number { value: mean, decimals: 2 });
-    let mut hill_adr = hill_row(climb_adr.adr, climb_adr);
+    let mean = mean.map_or(Cell::Missing, |value| Cell::Number { value, decimals: 2 });
+    let boosted_cells = scored(boosted.map(|boosted| boosted.error), mean);
+    let mut hill_adr = hill_row(climb_adr.map(|climbed| (climbed.adr, climbed)));
     hill_adr.extend([Cell::Missing, Cell::Missing]);
     vec![
         table(
             1,
             "Classification error ε with the first k eigenvalues",
             &["method", "ε on D", "k0", "ε on Q", &at("ε", "D"), &at("ε", "Q")],
-            vec![first_k_row(&first_k.error, first_k.best_error, k)],
+            vec![first_k_row(first_k.map(|found| (&found.error, found.best_error)), k)],
         ),
         table(
             2,
             "Classification error ε after hill climbing with backward steps",
             &["method", "ε on D", "sel", "ε on Q"],
-            vec![hill_row(climb_error.error, climb_error)],
+            vec![hill_row(climb_error.map(|climbed| (climbed.error, climbed)))],
         ),
         table(
             3,
@@ -115,7 +137,7 @@ pub fn tables(
             4,
             "Mean ADR",
             &["method", "ADR on D", "k0 or sel", "ADR on Q", &at("ADR", "D"), &at("ADR", "Q")],
-            vec![first_k_row(&first_k.adr, first_k.best_adr, k), hill_adr],
+            vec![first_k_row(first_k.map(|found| (&found.adr, found.best_adr)), k), hill_adr],
         ),
     ]
 }

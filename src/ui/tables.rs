@@ -20,7 +20,7 @@ use super::{
 };
 use crate::{
     query::Stage,
-    study::{Cell, Table},
+    study::{self, Cell, Table},
     workbench::{State, View, lists},
 };
 
@@ -31,15 +31,14 @@ const LEAST: usize = 6;
 
 /// The view.
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
-    let Some(tables) = &state.answer.tables.value else {
+    let Some(tables) = newest(state) else {
         heading(pane, 0, "Tables", Note::Settled);
         nothing(state, pane, 1);
         return;
     };
-    let note = note(state, state.stale(&state.answer.tables, Stage::Tables));
     let across = if pane.width() >= 150 { 2 } else { 1 };
     let width = pane.width() / across;
-    let sheets: Vec<Sheet> = tables.iter().map(|table| Sheet::new(state, table, note, width)).collect();
+    let sheets: Vec<Sheet> = tables.iter().map(|(table, note)| Sheet::new(state, table, *note, width)).collect();
     // In reading order, each line of tables as high as its highest.
     let lines: Vec<(&[Sheet], u16)> = sheets
         .chunks(across as usize)
@@ -66,6 +65,31 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     } else if scroll > 0 {
         pane.put_right(right, bottom, " PgUp ↑ ", Role::Chosen);
     }
+}
+
+/// The tables with what is to be known of each. While some of their parts are on their way each table is of the newest
+/// there is, and those whose own parts are there are not stale.
+fn newest(state: &State) -> Option<Vec<(Table, Note)>> {
+    let answer = &state.answer;
+    if !state.stale(&answer.tables, Stage::Tables) {
+        let note = note(state, false);
+        return Some(answer.tables.value.as_ref()?.iter().map(|table| (table.clone(), note)).collect());
+    }
+    let (first_k, boosted) = (answer.first_k.value.as_deref(), answer.boosted.value.as_deref());
+    let (error, adr) = (answer.climb_error.value.as_deref(), answer.climb_adr.value.as_deref());
+    if first_k.is_none() && boosted.is_none() && error.is_none() && adr.is_none() {
+        return None;
+    }
+    // The curves are there for every k; T belongs to the rounds that are there.
+    let (k, rounds, sel) = (state.settings.k, answer.settings.rounds, state.settings.sel);
+    let stale = [
+        state.stale(&answer.first_k, Stage::FirstK),
+        state.stale(&answer.climb_error, Stage::ClimbError),
+        state.stale(&answer.boosted, Stage::Boost),
+        state.stale(&answer.first_k, Stage::FirstK) || state.stale(&answer.climb_adr, Stage::ClimbAdr),
+    ];
+    let tables = study::tables_of(first_k, error, adr, boosted, k, rounds, sel);
+    Some(tables.into_iter().zip(stale).map(|(table, stale)| (table, note(state, stale))).collect())
 }
 
 /// What a line of a table is.
