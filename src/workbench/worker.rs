@@ -348,15 +348,24 @@ impl<'a> Desk<'a> {
         self.next_study = Instant::now() + FIRST_STUDY;
     }
 
+    /// The models to study, where a study of them would say more than the last one: all that will be there, or so many
+    /// more that the figures may move. The database keeps what each study found, so there must not be hundreds.
+    fn worth_a_study(&self) -> Option<Members> {
+        let members = self.host.members()?;
+        let worth = match &self.studied {
+            None => true,
+            Some(studied) if self.host.complete() || self.host.stopped() => *studied != members,
+            Some(studied) => members.places.len() > studied.places.len() * 9 / 8,
+        };
+        worth.then_some(members)
+    }
+
     /// Begins the study if it is due. Returns whether it did.
     fn begin_study(&mut self) -> bool {
         if self.study.is_some() || (Instant::now() < self.next_study && !self.host.complete()) {
             return false;
         }
-        let Some(members) = self.host.members() else { return false };
-        if self.studied.as_ref() == Some(&members) {
-            return false;
-        }
+        let Some(members) = self.worth_a_study() else { return false };
         self.studies += 1;
         let number = self.studies;
         let inquiry = self.host.inquire(members.clone());
@@ -401,7 +410,7 @@ impl<'a> Desk<'a> {
 
     /// How long nothing needs to be done, unless a message comes; none for ever.
     fn wait(&self) -> Option<Duration> {
-        let study = (self.study.is_none() && self.host.members() != self.studied).then_some(self.next_study);
+        let study = (self.study.is_none() && self.worth_a_study().is_some()).then_some(self.next_study);
         let at = [self.publish_at, study, self.look_at].into_iter().flatten().min()?;
         Some(at.saturating_duration_since(Instant::now()))
     }
