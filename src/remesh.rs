@@ -48,7 +48,7 @@ pub const VERTICES: RangeInclusive<usize> = 12..=2_000_000;
 pub const USUAL: usize = 10_000;
 
 /// Changes whenever another version of this code gives other meshes; part of the key of what is computed of them.
-pub const KERNEL: u32 = 2;
+pub const KERNEL: u32 = 3;
 
 /// Why a mesh was not re-meshed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

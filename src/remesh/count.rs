@@ -82,11 +82,21 @@ impl Work<'_> {
 
     /// The so many longest edges, or shortest, with their squared lengths over those aimed at: these first.
     fn edges_by_length(&self, share: usize, longest: bool) -> Vec<(f64, u32)> {
-        // Where not all are wanted, those that are on the right side of the length aimed at will do.
-        let some = share < self.mesh.slots() as usize;
-        let edges = (0..self.mesh.slots())
-            .filter(|&h| self.is_edge(h) && !(some && longest != (self.length2(h) > self.aim2(h))));
-        let mut edges: Vec<_> = edges.map(|h| (self.stretch2(h), h)).collect();
+        // Where a few are wanted, they are sought among those far from the length aimed at.
+        let far = if longest { [1.5, 1.0, 0.0] } else { [0.6, 1.0, f64::INFINITY] };
+        let mut edges = Vec::new();
+        for stretch2 in far {
+            edges.clear();
+            for h in (0..self.mesh.slots()).filter(|&h| self.is_edge(h)) {
+                let limit = stretch2 * self.aim2(h);
+                if (longest && self.length2(h) >= limit) || (!longest && self.length2(h) <= limit) {
+                    edges.push((self.stretch2(h), h));
+                }
+            }
+            if edges.len() >= share {
+                break;
+            }
+        }
         let by_length = |x: &(f64, u32), y: &(f64, u32)| {
             let order = x.0.total_cmp(&y.0).then(x.1.cmp(&y.1));
             if longest { order.reverse() } else { order }

@@ -2,10 +2,12 @@
 
 use super::{
     RemeshError,
-    work::{Kind, Work},
+    work::{Kind, Work, distance2},
 };
 use crate::mesh::vector::V3;
 
+/// Ways that are not worth going, in squares of the length aimed at.
+const STILL: f64 = 4e-4;
 /// The share of the gaps that mends the area of a ball.
 const SHARE: f64 = 0.625;
 /// The greatest share of the gaps.
@@ -31,7 +33,13 @@ impl Work<'_> {
                     let Some(middle) = self.middle_of_crease(a) else { continue };
                     self.surface.nearest_on_crease(middle, self.sides[a as usize])
                 }
-                Kind::Free => self.surface.nearest(self.middle(a, &weights), self.sides[a as usize]),
+                Kind::Free => {
+                    let middle = self.middle(a, &weights);
+                    if distance2(middle, self.mesh.point(a)) < STILL * self.size(a) * self.size(a) {
+                        continue;
+                    }
+                    self.surface.nearest(middle, self.sides[a as usize])
+                }
             };
             if self.may_move(a, spot.at, spot.normal) {
                 self.mesh.points[a as usize] = spot.at;

@@ -244,6 +244,53 @@ fn it_can_be_cancelled_at_any_time() {
     }
 }
 
+/// Counts the looks, and says yes from one of them on.
+struct From {
+    looks: AtomicUsize,
+    yes: usize,
+}
+
+impl Watch for From {
+    fn cancelled(&self) -> bool {
+        self.looks.fetch_add(1, Ordering::Relaxed) >= self.yes
+    }
+}
+
+#[test]
+fn cancelled_at_a_random_moment_it_ends_with_that_look() {
+    let mesh = limb(0.05);
+    let looks = |yes: usize| {
+        let watch = From { looks: AtomicUsize::new(0), yes };
+        let result = remesh(&mesh, 5000, &watch);
+        (result, watch.looks.into_inner())
+    };
+    let (result, all) = looks(usize::MAX);
+    assert_eq!(result.unwrap().vertices().len(), 5000);
+    // A few hundred looks in some 20 ms.
+    assert!(all > 100, "{all}");
+    let mut state = 7_u64;
+    for _ in 0..40 {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let yes = (state >> 33) as usize % all;
+        assert_eq!(looks(yes), (Err(RemeshError::Cancelled), yes + 1));
+    }
+}
+
+#[test]
+fn few_and_many_vertices_can_be_asked_for() {
+    for mesh in [limb(0.1), torus(30, 15), tube(30, 10), beside(&sphere(20, 10), &tube(20, 8))] {
+        for (count, angle) in [(100, 15.0), (50_000, 25.0)] {
+            let result = remeshed(&mesh, count);
+            let shape = quality::shape(&result);
+            assert!(shape.angle_1 > angle, "{count}: {shape:?}");
+            let fidelity = quality::fidelity(&mesh, &result, 5000).unwrap();
+            // What the chords of so few edges miss.
+            let missed = if count == 100 { 0.08 } else { 0.002 };
+            assert!(fidelity.hausdorff() < missed, "{count}: {fidelity:?}");
+        }
+    }
+}
+
 /// A ball with a thin limb: of radius 1, and from its pole a tube of `radius` that ends in a tip.
 fn limb(radius: f64) -> Mesh {
     grid_with_poles(16, 60, |u, w| {

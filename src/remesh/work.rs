@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Rounds of split, collapse, flip and relax.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 1;
 /// Meshes of so many vertices get one round of both kinds more, smaller ones up to three.
 const SMALL: usize = 6000;
 /// Rounds of relax and flip after the count is exact; up to [`EXTRA`] more while there are [`MANY`] bad triangles.
@@ -18,7 +18,7 @@ const EXTRA: usize = 5;
 /// One triangle of so many.
 const MANY: usize = 400;
 /// Splits and collapses leave this many times fewer vertices than a mesh has whose edges are all as aimed at.
-const FILL: f64 = 1.07;
+const FILL: f64 = 1.0;
 /// How much longer edges may be than without thin parts.
 const MOST: f64 = 1.3;
 /// Edges longer than this are split, shorter than that collapsed, in lengths aimed at.

@@ -2,9 +2,10 @@
 
     python tests/bench/remesh_peers.py OURS MESH…      (needs numpy, scipy, pymeshlab, pyacvd, pyvista)
 
-OURS is a folder of results by the bench `remesh --out OURS MESH…`; N is taken from each of them. Every result is
-measured here, by the same code: least angles, variation of edge lengths, Hausdorff distance by sampled points
-(nearest sampled point of the other, so an upper bound), topology. CPU seconds are of this process.
+OURS is a folder of results by the bench `remesh --out OURS MESH…`; N is taken from each of them, and the CPU seconds
+from its output where that was kept as OURS/table.txt. Every result is measured here, by the same code: least angles,
+variation of edge lengths, Hausdorff distance by sampled points (nearest sampled point of the other, so an upper
+bound), change of area, topology. CPU seconds of the others are of this process.
 """
 
 import pathlib
@@ -27,6 +28,11 @@ def load(path):
 def edges(faces):
     pairs = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     return np.unique(pairs, axis=0, return_counts=True)
+
+
+def surface_area(vertices, faces):
+    corners = vertices[faces]
+    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
 
 
 def samples(vertices, faces, count):
@@ -54,15 +60,15 @@ def measure(original, result):
     before = len(np.unique(original[1])) - len(edges(original[1])[0]) + len(original[1])
     one, two = samples(*original, 400_000), samples(vertices, faces, 400_000)
     far = max(cKDTree(two).query(one)[0].max(), cKDTree(one).query(two)[0].max())
+    area = surface_area(vertices, faces) / surface_area(*original) - 1
     diagonal = np.linalg.norm(np.ptp(original[0], axis=0))
     kept = "yes" if euler == before and (uses == 2).all() else "NO"
-    return len(np.unique(faces)), np.percentile(least, 1), least.min(), lengths.std() / lengths.mean(), far / diagonal * 100, kept
+    return len(np.unique(faces)), np.percentile(least, 1), least.min(), lengths.std() / lengths.mean(), far / diagonal * 100, area * 100, kept
 
 
 def by_pymeshlab(original, count):
     vertices, faces = original
-    corners = vertices[faces]
-    area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+    area = surface_area(vertices, faces)
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(vertices, faces))
     length = (area / (np.sqrt(0.75) * count)) ** 0.5
@@ -84,8 +90,11 @@ def by_pyacvd(original, count):
 
 def main():
     ours = pathlib.Path(sys.argv[1])
-    print("| mesh | by | CPU s | vertices | 1st percentile of least angle | least | cv of edges | Hausdorff % | topology kept |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    table = ours / "table.txt"
+    rows = [line.split() for line in table.read_text().splitlines()] if table.exists() else []
+    own = {row[0]: f"{float(row[12]):.3f}" for row in rows if len(row) > 12 and row[4] in ("yes", "NO")}
+    print("| mesh | by | CPU s | vertices | 1st percentile of least angle | least | cv of edges | Hausdorff % | area % | topology kept |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for mesh in map(pathlib.Path, sys.argv[2:]):
         original = load(mesh)
         result = load(ours / f"{mesh.stem}.obj")
@@ -93,9 +102,9 @@ def main():
         for name, remesh in [("ours", None), ("pymeshlab", by_pymeshlab), ("pyacvd", by_pyacvd)]:
             start = time.process_time()
             made = result if remesh is None else remesh(original, count)
-            seconds = "" if remesh is None else f"{time.process_time() - start:.2f}"
-            n, angle, least, cv, far, kept = measure(original, made)
-            print(f"| {mesh.stem} | {name} | {seconds} | {n} | {angle:.1f} | {least:.1f} | {cv:.3f} | {far:.2f} | {kept} |", flush=True)
+            seconds = own.get(mesh.stem, "") if remesh is None else f"{time.process_time() - start:.2f}"
+            n, angle, least, cv, far, area, kept = measure(original, made)
+            print(f"| {mesh.stem} | {name} | {seconds} | {n} | {angle:.1f} | {least:.1f} | {cv:.3f} | {far:.2f} | {area:+.2f} | {kept} |", flush=True)
 
 
 main()
