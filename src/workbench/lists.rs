@@ -1,6 +1,6 @@
 //! In which order the views list what they list, and which of it.
 //!
-//! Models have a list of their own ([`ModelList`](super::ModelList)); the lists and tables of all other views share
+//! Models have a list of their own ([`ModelList`]); the lists and tables of all other views share
 //! this: an order that goes through what can be compared, its reverse, and a text that a line must have.
 
 use std::cmp::Ordering;

@@ -107,6 +107,32 @@ fn without_colour_no_view_says_less() {
     }
 }
 
+/// The pictures in the README are of real data; at least their tabs and keys are those of the program.
+#[test]
+fn the_readmes_pictures_have_the_keys_of_today() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let pictures: Vec<&str> = readme
+        .split("```text\n")
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap())
+        .filter(|picture| picture.starts_with(" eigenselect "))
+        .collect();
+    assert!(pictures.len() >= 2, "the README shows the screen");
+    // Marks on the tabs say something of the data.
+    let ends = |picture: &str| {
+        let lines: Vec<&str> = picture.lines().collect();
+        [lines[1].replace(['!', '×'], " "), lines[lines.len() - 1].to_owned()]
+    };
+    let size = (100, 30);
+    let drawn: Vec<_> = View::ALL
+        .into_iter()
+        .map(|view| ends(&text(&buffer(&state_of(view, size, Look::default()), Look::default(), size))))
+        .collect();
+    for picture in pictures {
+        assert!(drawn.contains(&ends(picture)), "take this one anew, at 100×30:\n{picture}");
+    }
+}
+
 /// Draws the views at a size; whatever it is, nothing panics, and the last line is used as soon as there is a screen.
 fn draw_all(states: &mut [State], (columns, rows): (u16, u16)) {
     for state in states {
