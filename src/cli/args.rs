@@ -4,15 +4,16 @@ use std::{path::PathBuf, time::Duration};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use self::values::{age, count, size, vertices};
+pub(super) use self::spectrum::{SpectrumArguments, SpectrumFormat};
+use self::values::{age, count, size};
 use super::{doctor::DoctorArguments, papers::CompletionsArguments};
 use crate::{
-    laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     mesh::synth::class_names,
-    query::{Parameter, Problem, Settings},
+    query::{Parameter, Settings},
     report,
 };
 
+mod spectrum;
 mod values;
 
 const EXAMPLES: &str = "\
@@ -136,48 +137,6 @@ pub(super) enum StudyName {
     Paper,
 }
 
-/// `tui spectrum`.
-#[derive(Debug, Args)]
-#[command(after_help = SPECTRUM_NOTES)]
-pub(super) struct SpectrumArguments {
-    /// Mesh files: OBJ, OFF, PLY or STL; points without faces also as XYZ
-    #[arg(value_name = "MESH", required = true)]
-    pub(super) meshes: Vec<PathBuf>,
-    /// How many eigenvalues, the zeros included
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = count)]
-    pub(super) count: usize,
-    /// Re-mesh to so many vertices first
-    #[arg(long, value_name = "N", value_parser = vertices)]
-    pub(super) remesh: Option<usize>,
-    /// The eigenproblem: finite elements (L f = λ B f), or cotangent weights alone (L f = λ f)
-    #[arg(long, value_enum, default_value = "fem")]
-    pub(super) operator: OperatorName,
-    /// The mass matrix B of fem
-    #[arg(long, value_enum, default_value = "consistent")]
-    pub(super) mass: MassName,
-    /// What holds on the boundary, the edges of one face: no slope, or zero
-    #[arg(long, value_enum, default_value = "neumann")]
-    pub(super) boundary: BoundaryName,
-    /// The triangles that are summed over
-    #[arg(long, value_enum, default_value = "auto")]
-    pub(super) triangulation: TriangulationName,
-    /// How to write them [default: by the ending of --out, else text]
-    #[arg(long, value_enum)]
-    pub(super) format: Option<SpectrumFormat>,
-    /// Write to a file; with ev and several meshes, to a folder with a file for each
-    #[arg(long, value_name = "FILE")]
-    pub(super) out: Option<PathBuf>,
-    /// Keep spectra in DIR [default: the folder `cache` beside the data set, else the user's cache folder]
-    #[arg(long, value_name = "DIR", conflicts_with = "no_cache")]
-    pub(super) cache: Option<PathBuf>,
-    /// Neither read nor keep spectra
-    #[arg(long)]
-    pub(super) no_cache: bool,
-    /// Meshes solved at once [default: all processors]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(super) threads: Option<u16>,
-}
-
 /// `tui synth`.
 #[derive(Debug, Args)]
 #[command(after_help = CLASSES.as_str())]
@@ -273,106 +232,6 @@ impl From<ReportFormat> for report::Format {
     }
 }
 
-/// `--format` of spectra.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum SpectrumFormat {
-    /// aligned plain text
-    Text,
-    /// a line for each mesh: its size, how many are certified, what was done to it
-    Summary,
-    /// mesh,k,eigenvalue,error
-    Csv,
-    /// everything known of each spectrum
-    Json,
-    /// the eigenvalue file of ShapeDNA and LaPy
-    Ev,
-}
-
-/// `--operator`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum OperatorName {
-    Fem,
-    Cot,
-}
-
-impl From<OperatorName> for Operator {
-    fn from(name: OperatorName) -> Self {
-        match name {
-            OperatorName::Fem => Self::Fem,
-            OperatorName::Cot => Self::Cot,
-        }
-    }
-}
-
-/// `--mass`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum MassName {
-    Consistent,
-    Lumped,
-    /// their mean
-    Blended,
-}
-
-impl From<MassName> for Mass {
-    fn from(name: MassName) -> Self {
-        match name {
-            MassName::Consistent => Self::Consistent,
-            MassName::Lumped => Self::Lumped,
-            MassName::Blended => Self::Blended,
-        }
-    }
-}
-
-/// `--boundary`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum BoundaryName {
-    Neumann,
-    Dirichlet,
-}
-
-impl From<BoundaryName> for Boundary {
-    fn from(name: BoundaryName) -> Self {
-        match name {
-            BoundaryName::Neumann => Self::Neumann,
-            BoundaryName::Dirichlet => Self::Dirichlet,
-        }
-    }
-}
-
-/// `--triangulation`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum TriangulationName {
-    /// the given ones; for points and soups, which have none that hang together, others
-    Auto,
-    /// the faces of the mesh
-    Given,
-    /// the intrinsic Delaunay triangulation of the surface: for bad triangles
-    Delaunay,
-    /// the same of its tufted cover: for non-manifold meshes and soups
-    Tufted,
-}
-
-impl From<TriangulationName> for Triangulation {
-    fn from(name: TriangulationName) -> Self {
-        match name {
-            TriangulationName::Auto => Self::Auto,
-            TriangulationName::Given => Self::Given,
-            TriangulationName::Delaunay => Self::Delaunay,
-            TriangulationName::Tufted => Self::Tufted,
-        }
-    }
-}
-
-impl SpectrumArguments {
-    /// What the spectra are of, besides the meshes.
-    pub(super) fn problem(&self) -> Problem {
-        let choice = Choice::new(self.operator.into(), self.mass.into())
-            .with_boundary(self.boundary.into())
-            .with_triangulation(self.triangulation.into());
-        Problem { remesh: self.remesh, choice }
-    }
-}
-
 /// A `--set NAME=VALUE`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Setting {
@@ -392,16 +251,6 @@ fn setting(text: &str) -> Result<Setting, String> {
     }
     Ok(Setting { parameter, value: value.trim().to_owned() })
 }
-
-const SPECTRUM_NOTES: &str = "\
-Eigenvalues are ascending, multiplicities repeated, and certified: the number found below a bound
-σ equals the number of negative pivots of L − σB. A mesh of c components has c zeros. A mesh that
-fails is named on standard error, the others are written, and the exit code is 1.
-
-Examples:
-  tui spectrum bunny.obj
-  tui spectrum a.off b.off --count 500 --format csv --out spectra.csv
-  tui spectrum bunny.ply --mass lumped --out bunny.ev        readable with LaPy's read_ev";
 
 /// The classes of shapes that can be made.
 static CLASSES: std::sync::LazyLock<String> =
