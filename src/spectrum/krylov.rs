@@ -4,7 +4,11 @@
 //! nearest to σ on both sides come first. The basis is kept B-orthogonal in full, block against all earlier blocks,
 //! because what is lost there comes back as copies of eigenvalues (Grimes, Lewis and Simon 1994, § 4).
 
-use self::projected::{cholesky, product, projected};
+pub(super) use self::random::Random;
+use self::{
+    again::norm,
+    projected::{cholesky, product, projected},
+};
 use super::{
     block::{Combine, Dots, Multiply, Recur, Residual, Square, Update},
     factor::Factor,
@@ -16,7 +20,9 @@ use super::{
     timings::Cost,
 };
 
+mod again;
 mod projected;
+mod random;
 
 /// Inverse iterations on the start block. They take out of it what lies far from the shift at the price of a solve
 /// each, where a Lanczos step costs a block of the basis as well.
@@ -169,9 +175,14 @@ impl<'a> Krylov<'a> {
         }
         let alpha = self.recur();
         poll.charge(Cost::Orthogonalisation);
-        let lost = self.orthogonalise(blocks, Some(&alpha), poll)?;
+        let mut lost = self.orthogonalise(blocks, Some(&alpha), poll)?;
+        let mut beta = self.normalise(blocks, poll)?;
+        // Where more was taken out than is left, one pass in single precision leaves too much of it: the space is
+        // exhausted but for what hardly differs, as where some triangles are many orders smaller than the others.
+        if (0..WIDTH).any(|column| norm(&lost, column) > norm(&[beta], column)) {
+            self.again(blocks, &mut lost, &mut beta, poll)?;
+        }
         self.lost.push(lost);
-        let beta = self.normalise(blocks, poll)?;
         self.beta.push(beta);
         self.keep();
         Ok(())
@@ -427,20 +438,6 @@ impl Krylov<'_> {
             to
         });
         Some(made.collect())
-    }
-}
-
-/// Numbers between −1 and 1 (splitmix64).
-#[derive(Debug)]
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub(super) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
 

@@ -325,7 +325,8 @@ impl Piece {
                 continue;
             }
             let Some(ritz) = krylov.ritz(poll) else { break };
-            let scales = Scales { sigma, spacing, least: 1e-4 * sigma, accuracy: krylov.accuracy() };
+            let scales =
+                Scales { sigma, spacing, least: 1e-4 * sigma, accuracy: krylov.accuracy(), leak: krylov.leak() };
             #[cfg_attr(not(test), expect(unused_mut, reason = "a test changes what was found"))]
             let mut sides = Sides::new(&ritz, scales);
             #[cfg(test)]

@@ -17,7 +17,8 @@
 //!    residuals (Mathias 1998, *Quadratic residual bounds for the Hermitian eigenvalue problem*, theorem 1, whose gap
 //!    is to the rest of the projected operator, so that 1 is applied to it first). This is [`Found::error`].
 //!
-//! Rounding is added to both: that of the dense eigenproblem, 16 ε times the largest θ, and that of the factorisation
+//! Rounding is added to both: that of the dense eigenproblem, 16 ε times the largest θ, what the basis's single
+//! precision [leaves out](super::krylov::Krylov::leak), and that of the factorisation
 //! and the solves. These solve a neighbouring problem, (L − σB + E) x = Bx. E shifts an eigenvalue by xᵀEx, which
 //! is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [eightfold](SAFETY). It
 //! is the one part of the bound that is an estimate.
@@ -91,6 +92,8 @@ pub(super) struct Scales {
     pub least: f64,
     /// By how much the solves shift eigenvalues.
     pub accuracy: f64,
+    /// By how much the projected operator is off.
+    pub leak: f64,
 }
 
 /// Both sides at one moment of a process.
@@ -108,7 +111,7 @@ impl Sides {
         let Some(first) = ritz.first() else { return Self::default() };
         let side = |right: bool| {
             let list: Vec<Ritz> = ritz.iter().copied().filter(|ritz| (ritz.theta > 0.0) == right).collect();
-            converged(&list, scales, 16.0 * f64::EPSILON * first.theta.abs())
+            converged(&list, scales, 16.0 * f64::EPSILON * first.theta.abs() + scales.leak)
         };
         Self { left: side(false), right: side(true), nearest: 1.0 / first.theta.abs() }
     }

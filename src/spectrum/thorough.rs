@@ -56,8 +56,13 @@ pub(super) fn thorough(
             krylov.step(poll)?;
         }
         let Some(ritz) = krylov.ritz(poll) else { continue };
-        let scales =
-            Scales { sigma: pole, spacing: width / total as f64, least: 1e-4 * slice.end, accuracy: krylov.accuracy() };
+        let scales = Scales {
+            sigma: pole,
+            spacing: width / total as f64,
+            least: 1e-4 * slice.end,
+            accuracy: krylov.accuracy(),
+            leak: krylov.leak(),
+        };
         #[cfg_attr(not(test), expect(unused_mut, reason = "a test changes what was found"))]
         let mut sides = Sides::new(&ritz, scales);
         #[cfg(test)]

@@ -5,6 +5,7 @@
 
 mod fuzz;
 mod hostile;
+mod memory;
 mod obj;
 mod off;
 mod ply;

@@ -1,0 +1,15 @@
+//! Chance that is the same every time.
+
+/// Numbers between −1 and 1 (splitmix64).
+#[derive(Debug)]
+pub(in crate::spectrum) struct Random(pub u64);
+
+impl Random {
+    pub(in crate::spectrum) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
