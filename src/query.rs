@@ -26,6 +26,7 @@ pub(crate) use self::{
 };
 
 mod answer;
+mod aside;
 mod costs;
 mod db;
 mod examined;

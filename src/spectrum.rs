@@ -207,8 +207,8 @@ impl Spectrum {
 /// of bands that are not known, at about 40 eigenvalues each.
 ///
 /// Memory is bounded whatever the mesh and however many eigenvalues: by 8 MB, 4 kB for each row of the matrices, 24
-/// bytes for each number in a factor ([`Timings::entries`]) and 1 kB for each vertex and face (18 faces for each point of
-/// a cloud), on one thread. Each thread that helps takes another 4 kB a row and 16 bytes for a number in a factor.
+/// bytes for each number in a factor ([`Timings::entries`]) and 1 kB for each vertex and face (18 faces for each point
+/// of a cloud), on one thread. Each thread that helps takes another 4 kB a row and 16 bytes for a number in a factor.
 ///
 /// # Errors
 /// When the watch cancels, when the mesh cannot be assembled (see [`LaplacianError`]), or when the eigenvalues found

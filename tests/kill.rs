@@ -179,3 +179,40 @@ fn a_run_killed_while_it_extends_spectra_loses_none_of_their_beginnings() {
         assert_eq!((warm.computed, warm.from_disk), (0, bench.models), "{what}");
     }
 }
+
+#[test]
+fn a_killed_solve_has_left_bands_with_which_the_next_one_ends_as_if_undisturbed() {
+    let room = tempfile::tempdir().unwrap();
+    let made = tui(room.path())
+        .args(["synth", "data", "--classes", "vase", "--models", "1", "--vertices", "6000"])
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    let command = |cache: &str, count: usize| {
+        let mut command = tui(room.path());
+        let count = count.to_string();
+        command.args(["spectrum", "data/train/vase/vase-01.obj", "--threads", "1", "--format", "json"]);
+        command.args(["--count", &count, "--cache", cache]);
+        command
+    };
+    let begun = |cache: &str| {
+        let stats = stats(&room.path().join(cache));
+        stats.is_ok_and(|stats| stats.kinds.iter().any(|kind| kind.kind == "begun" && kind.tally.files == 1))
+    };
+    let mut child = command("killed", 5000).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !begun("killed") && !ended(&mut child) {
+        thread::sleep(Duration::from_millis(5));
+    }
+    assert!(!ended(&mut child), "it ended before it could be killed");
+    child.kill().unwrap();
+    child.wait().unwrap();
+
+    let solve = |cache: &str, count: usize| {
+        let output = command(cache, count).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(json["run"]["spectra"]["computed"], 1, "{cache}");
+        json["spectra"][0]["eigenvalues"].clone()
+    };
+    assert_eq!(solve("killed", 150), solve("undisturbed", 150));
+}

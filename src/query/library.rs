@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Problem, Source, Stage,
+    aside::aside,
     costs::Costs,
     stamp::{ContentHash, Stamp},
     trace::Trace,
@@ -24,7 +25,7 @@ use crate::{
     remesh::RemeshError,
     spectrum::{self, Band, Crew, Request, Spectrum, SpectrumError},
     store::{Key, Store},
-    watch::{Unwatched, Watch},
+    watch::{Stopped, Unwatched, Watch},
 };
 
 /// Why a model takes no part, in one line.
@@ -282,7 +283,10 @@ impl Library {
         }
         let begun_key = key_of("begun");
         let known = self.known_bands(name, stored, &begun_key);
-        let mesh = match problem.prepare(&load(file)?, watch) {
+        let (path, FileAt { format, content, .. }) = (file.path.to_owned(), file);
+        let read = move || load(FileAt { path: &path, format, content }).map(|mesh| mesh.canonical());
+        let canonical = aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??;
+        let mesh = match problem.prepare(canonical, watch) {
             Ok(mesh) => mesh,
             Err(RemeshError::Cancelled) => return Err(Missing::Cancelled),
             Err(error) => return Err(self.refuse(name, &error)),
@@ -375,7 +379,7 @@ fn read(path: &Path) -> Result<Vec<u8>, Failure> {
 /// The mesh that a problem on the mesh in `file` is on, in its canonical form. It is not kept.
 pub(crate) fn prepared(file: FileAt<'_>, problem: Problem) -> Result<Mesh, Failure> {
     let mesh = load(file).map_err(|failure| failure.reason)?;
-    problem.prepare(&mesh, &Unwatched).map_err(|error| error.to_string().into())
+    problem.prepare(mesh.canonical(), &Unwatched).map_err(|error| error.to_string().into())
 }
 
 /// Reads the mesh, and makes sure that it is still the one meant.

@@ -17,10 +17,14 @@ use std::{
 
 use super::{
     Problem, Stage,
+    aside::aside,
     library::{Facts, Failure, FileAt, Found, Library, Missing},
     stamp::Stamp,
 };
-use crate::{mesh::Format, watch::Watch};
+use crate::{
+    mesh::Format,
+    watch::{Stopped, Watch},
+};
 
 /// The nice value of polite threads: of a core they share with the screen's thread they get a tenth.
 #[cfg(target_os = "linux")]
@@ -214,9 +218,14 @@ fn work(shared: &Shared, thread: usize) {
 fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts>>) -> Result<Found, (Stage, Missing)> {
     let unread = |reason| (Stage::Content, Missing::Unread(reason));
     let stamp = job.stamp.ok_or_else(|| unread("the file is gone".into()))?;
-    let content = shared.library.content(&job.path, stamp).map_err(unread)?;
+    let (library, path, format) = (shared.library.clone(), job.path.clone(), job.format);
+    let examine = move || {
+        let content = library.content(&path, stamp).map_err(unread)?;
+        let facts = library.facts(FileAt { path: &path, format, content });
+        facts.map(|facts| (content, facts)).map_err(|failure| (Stage::Survey, failure.into()))
+    };
+    let (content, known) = aside(&job.path, eye, examine).map_err(|Stopped| (Stage::Content, Missing::Cancelled))??;
     let file = FileAt { path: &job.path, format: job.format, content };
-    let known = shared.library.facts(file).map_err(|failure| (Stage::Survey, failure.into()))?;
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));
     shared.library.spectrum(file, &known, job.problem, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))

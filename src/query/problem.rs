@@ -27,14 +27,14 @@ impl Problem {
         }
     }
 
-    /// The mesh that the eigenproblem is on, in its canonical form.
+    /// The mesh that the eigenproblem is on, in its canonical form, from that of the file's mesh.
     ///
     /// # Errors
     /// When it cannot be re-meshed, or the watch said so.
-    pub(super) fn prepare(self, mesh: &Mesh, watch: &dyn Watch) -> Result<Mesh, RemeshError> {
+    pub(super) fn prepare(self, canonical: Mesh, watch: &dyn Watch) -> Result<Mesh, RemeshError> {
         match self.remesh {
-            None => Ok(mesh.canonical()),
-            Some(vertices) => remesh(&mesh.canonical(), vertices, &Silent(watch)),
+            None => Ok(canonical),
+            Some(vertices) => remesh(&canonical, vertices, &Silent(watch)),
         }
     }
 

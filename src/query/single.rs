@@ -4,6 +4,7 @@ use std::{path::Path, sync::Arc, time::Instant};
 
 use super::{
     Problem, Source,
+    aside::aside,
     library::{FileAt, Library, Missing},
     stamp::Stamp,
     trace::Trace,
@@ -13,7 +14,7 @@ use crate::{
     remesh::RemeshError,
     spectrum::{self, Crew, Request, Spectrum, SpectrumError},
     store::Store,
-    watch::Watch,
+    watch::{Stopped, Watch},
 };
 
 /// A mesh file's spectrum, with what is known of the mesh.
@@ -81,9 +82,15 @@ impl Singles {
             Err(error) => return Err(failed(&format!("cannot be read: {error}"))),
         };
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
-        let content = library.content(path, stamp).map_err(|reason| failed(&reason))?;
+        let (reader, owned) = (library.clone(), path.to_owned());
+        let examine = move || {
+            let content = reader.content(&owned, stamp)?;
+            let facts = reader.facts(FileAt { path: &owned, format, content });
+            facts.map(|facts| (content, facts)).map_err(|failure| failure.reason)
+        };
+        let examined = aside(path, watch, examine).map_err(|Stopped| SingleError::Cancelled)?;
+        let (content, facts) = examined.map_err(|reason| failed(&reason))?;
         let file = FileAt { path, format, content };
-        let facts = library.facts(file).map_err(|failure| failed(&failure.reason))?;
         let found = library.spectrum(file, &facts, problem, count, watch).map_err(|missing| match missing {
             Missing::Cancelled => SingleError::Cancelled,
             Missing::Failed(reason) | Missing::Unread(reason) => failed(&reason),
@@ -107,13 +114,19 @@ fn solve_alone(
     watch: &dyn Watch,
 ) -> Result<Single, SingleError> {
     let start = Instant::now();
-    let bytes = std::fs::read(path).map_err(|error| SingleError::Failed(format!("cannot be read: {error}")))?;
-    let mesh = mesh::read(&bytes, format).map_err(|error| SingleError::Failed(error.to_string()))?;
-    let survey = mesh::survey(&mesh);
-    if let Some(reason) = survey.refusal() {
-        return Err(SingleError::Failed(reason));
-    }
-    let prepared = problem.prepare(&mesh, watch).map_err(|error| match error {
+    let owned = path.to_owned();
+    let examine = move || {
+        let bytes = std::fs::read(&owned).map_err(|error| format!("cannot be read: {error}"))?;
+        let mesh = mesh::read(&bytes, format).map_err(|error| error.to_string())?;
+        let survey = mesh::survey(&mesh);
+        match survey.refusal() {
+            Some(reason) => Err(reason),
+            None => Ok((mesh.hash(), survey, mesh.canonical())),
+        }
+    };
+    let examined = aside(path, watch, examine).map_err(|Stopped| SingleError::Cancelled)?;
+    let (geometry, survey, canonical) = examined.map_err(SingleError::Failed)?;
+    let prepared = problem.prepare(canonical, watch).map_err(|error| match error {
         RemeshError::Cancelled => SingleError::Cancelled,
         error => SingleError::Failed(error.to_string()),
     })?;
@@ -125,7 +138,7 @@ fn solve_alone(
     })?;
     spectrum.notes.splice(0..0, problem.note());
     Ok(Single {
-        geometry: mesh.hash(),
+        geometry,
         survey,
         spectrum: Arc::new(spectrum),
         source: Source::Ran,
