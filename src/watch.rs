@@ -22,6 +22,17 @@ pub struct Unwatched;
 
 impl Watch for Unwatched {}
 
+/// Cancels everything from the first.
+#[cfg(test)]
+pub(crate) struct Unwanted;
+
+#[cfg(test)]
+impl Watch for Unwanted {
+    fn cancelled(&self) -> bool {
+        true
+    }
+}
+
 /// Hears of a cancellation as another watch does, but keeps the progress from it: that of a part, in another unit.
 #[derive(Clone, Copy)]
 pub struct Silent<'a>(pub &'a dyn Watch);

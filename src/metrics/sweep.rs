@@ -136,7 +136,7 @@ mod tests {
             Cancelled, Distance, Exam, Sample, figures,
             samples::{nobody, only_queries, sample, samples},
         },
-        watch::{Unwatched, Watch},
+        watch::{Unwanted, Unwatched},
     };
 
     fn exams(sample: &Sample) -> [Exam<'_>; 2] {
@@ -187,13 +187,7 @@ mod tests {
 
     #[test]
     fn stops_when_cancelled() {
-        struct Stop;
-        impl Watch for Stop {
-            fn cancelled(&self) -> bool {
-                true
-            }
-        }
         let sample = sample(5, 5, 5, 0);
-        assert_eq!(sweep(Exam::leave_one_out(&sample), Distance::L2, &Stop), Err(Cancelled));
+        assert_eq!(sweep(Exam::leave_one_out(&sample), Distance::L2, &Unwanted), Err(Cancelled));
     }
 }

@@ -50,17 +50,31 @@ fn boost_class(
     rounds: usize,
     watch: &dyn Watch,
 ) -> Result<Strong, Cancelled> {
-    let mut strong = Strong::default();
     if !ranges.known(class) {
-        return Ok(strong);
+        return Ok(Strong::default());
     }
-    let mut negatives = Negatives::new(sample, ranges, class);
+    run(Negatives::new(sample, ranges, class), rounds, watch)
+}
+
+/// The weak classifiers of one class, and the weights of the models.
+trait Weighted {
+    /// The round that takes the weak classifier with the least weighted error, or none when that is ½.
+    fn best(&self) -> Option<Round>;
+
+    /// Gives weight to what the round got wrong: w ← w·exp(−α·h·y)/Z. False when it got nothing wrong, which leaves
+    /// the weights as they were.
+    fn update(&mut self, round: &Round) -> bool;
+}
+
+/// Runs the rounds of one class.
+fn run(mut weighted: impl Weighted, rounds: usize, watch: &dyn Watch) -> Result<Strong, Cancelled> {
+    let mut strong = Strong::default();
     while strong.rounds.len() < rounds {
         if watch.cancelled() {
             return Err(Cancelled);
         }
-        let Some(round) = best(&negatives.errors()) else { break };
-        if negatives.update(&round) {
+        let Some(round) = weighted.best() else { break };
+        if weighted.update(&round) {
             strong.rounds.push(round);
         } else {
             // Nothing changes any more.
@@ -141,9 +155,13 @@ impl Negatives {
         }
         errors
     }
+}
 
-    /// Gives weight to what the round got wrong: w ← w·exp(−α·h·y)/Z. False when it got nothing wrong, which leaves
-    /// the weights as they were.
+impl Weighted for Negatives {
+    fn best(&self) -> Option<Round> {
+        best(&self.errors())
+    }
+
     fn update(&mut self, round: &Round) -> bool {
         let col = round.index as usize - 1;
         let within: Vec<u8> = self.within.iter().skip(col).step_by(self.cols).copied().collect();
@@ -172,7 +190,7 @@ mod tests {
             samples::{nobody, one_class, sample, samples},
         },
         selection::{Round, Strong},
-        watch::{Unwatched, Watch},
+        watch::{Unwanted, Unwatched},
     };
 
     /// The paper's formulas, model by model.
@@ -308,12 +326,6 @@ mod tests {
 
     #[test]
     fn stops_when_cancelled() {
-        struct Stop;
-        impl Watch for Stop {
-            fn cancelled(&self) -> bool {
-                true
-            }
-        }
-        assert_eq!(boost(&sample(5, 5, 5, 0), 20, &Stop), Err(Cancelled));
+        assert_eq!(boost(&sample(5, 5, 5, 0), 20, &Unwanted), Err(Cancelled));
     }
 }

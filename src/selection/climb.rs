@@ -138,7 +138,7 @@ mod tests {
             Cancelled, Distance, Exam, Features, Sample, figures,
             samples::{nobody, one_class, sample, samples},
         },
-        watch::{Unwatched, Watch},
+        watch::{Unwanted, Unwatched},
     };
 
     /// The definition, candidate by candidate.
@@ -322,12 +322,6 @@ mod tests {
 
     #[test]
     fn stops_when_cancelled() {
-        struct Stop;
-        impl Watch for Stop {
-            fn cancelled(&self) -> bool {
-                true
-            }
-        }
-        assert_eq!(climb(&sample(5, 5, 5, 0), Distance::L2, Cost::Adr, &Stop), Err(Cancelled));
+        assert_eq!(climb(&sample(5, 5, 5, 0), Distance::L2, Cost::Adr, &Unwanted), Err(Cancelled));
     }
 }

@@ -93,4 +93,5 @@ def main():
           f"to {TOLERANCE}")
 
 
-main()
+if __name__ == "__main__":
+    main()

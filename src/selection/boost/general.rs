@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::boost;
+use super::{Weighted, best, boost, run};
 use crate::{
     metrics::{Cancelled, Features, Sample},
     selection::{
@@ -50,59 +50,54 @@ fn of_class(
     weak: Weak,
     watch: &dyn Watch,
 ) -> Result<Strong, Cancelled> {
-    let mut strong = Strong::default();
     let members = sample.train_labels.iter().filter(|&&label| label == class).count();
     let others = sample.train_labels.len() - members;
     if members == 0 {
-        return Ok(strong);
+        return Ok(Strong::default());
     }
-    // Weights, those of the others negative.
     let start = |&label: &u32| if label == class { 0.5 / members as f64 } else { -0.5 / others as f64 };
-    let mut signed: Vec<f64> = sample.train_labels.iter().map(start).collect();
-    while strong.rounds.len() < rounds {
-        if watch.cancelled() {
-            return Err(Cancelled);
-        }
-        let sum = |sign: f64| signed.iter().filter(|&&s| s * sign > 0.0).map(|s| s.abs()).sum::<f64>();
+    let weights = sample.train_labels.iter().map(start).collect();
+    run(Signed { sample, field, weak, weights }, rounds, watch)
+}
+
+/// Weak classifiers that may err on members and on others.
+struct Signed<'a> {
+    sample: &'a Sample,
+    field: &'a Field,
+    weak: Weak,
+    /// Those of the others negative.
+    weights: Vec<f64>,
+}
+
+impl Weighted for Signed<'_> {
+    fn best(&self) -> Option<Round> {
+        let Self { field, weights, .. } = self;
+        let sum = |sign: f64| weights.iter().filter(|&&s| s * sign > 0.0).map(|s| s.abs()).sum::<f64>();
         let (positive, negative) = (sum(1.0), sum(-1.0));
         let found: Vec<(f64, Test)> =
-            (0..field.cols()).map(|col| field.best(col, weak, &signed, positive, negative)).collect();
-        let Some(round) = best(&found) else { break };
-        if update(sample, &mut signed, &round) {
-            strong.rounds.push(round);
-        } else {
-            // Nothing was wrong, so nothing changes any more.
-            let left = rounds - strong.rounds.len();
-            strong.rounds.extend(std::iter::repeat_n(round, left));
+            (0..field.cols()).map(|col| field.best(col, self.weak, weights, positive, negative)).collect();
+        let errors: Vec<f64> = found.iter().map(|&(error, _)| error.max(0.0)).collect();
+        let round = best(&errors)?;
+        let test = found[round.index as usize - 1].1;
+        Some(Round { test: Some(test), ..round })
+    }
+
+    fn update(&mut self, round: &Round) -> bool {
+        let Some(test) = round.test else { return false };
+        let col = round.index as usize - 1;
+        let (less, more) = ((-round.alpha).exp(), round.alpha.exp());
+        let mut any = false;
+        for (model, weight) in self.weights.iter_mut().enumerate() {
+            let wrong = test.says(self.sample.train.row(model)[col]) != (*weight > 0.0);
+            *weight *= if wrong { more } else { less };
+            any |= wrong;
         }
+        let total: f64 = self.weights.iter().map(|weight| weight.abs()).sum();
+        for weight in &mut self.weights {
+            *weight /= total;
+        }
+        any
     }
-    Ok(strong)
-}
-
-/// The round that takes the least error, as for the paper's weak classifiers.
-fn best(found: &[(f64, Test)]) -> Option<Round> {
-    let errors: Vec<f64> = found.iter().map(|&(error, _)| error.max(0.0)).collect();
-    let round = super::best(&errors)?;
-    let test = found[round.index as usize - 1].1;
-    Some(Round { test: Some(test), ..round })
-}
-
-/// Gives weight to what the round got wrong: w ← w·exp(−α·h·y)/Z. False when it got nothing wrong.
-fn update(sample: &Sample, signed: &mut [f64], round: &Round) -> bool {
-    let Some(test) = round.test else { return false };
-    let col = round.index as usize - 1;
-    let (less, more) = ((-round.alpha).exp(), round.alpha.exp());
-    let mut any = false;
-    for (model, weight) in signed.iter_mut().enumerate() {
-        let wrong = test.says(sample.train.row(model)[col]) != (*weight > 0.0);
-        *weight *= if wrong { more } else { less };
-        any |= wrong;
-    }
-    let total: f64 = signed.iter().map(|weight| weight.abs()).sum();
-    for weight in signed {
-        *weight /= total;
-    }
-    any
 }
 
 /// ε after 1…`rounds` rounds on training models that took no part in them: every third of each class.
@@ -173,7 +168,7 @@ mod tests {
             samples::{nobody, one_class, sample, samples},
         },
         selection::{Strong, Weak, boost},
-        watch::{Unwatched, Watch},
+        watch::{Unwanted, Unwatched},
     };
 
     const NEW: [Weak; 2] = [Weak::Interval, Weak::Threshold];
@@ -268,12 +263,6 @@ mod tests {
 
     #[test]
     fn stops_when_cancelled() {
-        struct Stop;
-        impl Watch for Stop {
-            fn cancelled(&self) -> bool {
-                true
-            }
-        }
-        assert_eq!(boost_by(&sample(5, 5, 5, 0), 20, Weak::Interval, &Stop), Err(Cancelled));
+        assert_eq!(boost_by(&sample(5, 5, 5, 0), 20, Weak::Interval, &Unwanted), Err(Cancelled));
     }
 }

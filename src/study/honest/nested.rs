@@ -189,7 +189,7 @@ mod tests {
         metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, Scale, figures, samples::sample},
         selection::{Cost, Search, climb},
         study::Learner,
-        watch::{Unwatched, Watch},
+        watch::{Unwanted, Unwatched},
     };
 
     const PLAN: Plan = Plan { folds: 3, repeats: 2, resamples: 200, seed: 5 };
@@ -296,12 +296,6 @@ mod tests {
 
     #[test]
     fn stops_when_cancelled() {
-        struct Stop;
-        impl Watch for Stop {
-            fn cancelled(&self) -> bool {
-                true
-            }
-        }
-        assert_eq!(honest(&sample(5, 5, 5, 0), Scale::None, Distance::L2, &METHODS, PLAN, &Stop), Err(Cancelled));
+        assert_eq!(honest(&sample(5, 5, 5, 0), Scale::None, Distance::L2, &METHODS, PLAN, &Unwanted), Err(Cancelled));
     }
 }

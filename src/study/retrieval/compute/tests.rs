@@ -8,7 +8,7 @@ use crate::{
     },
     selection::{Climb, Cost, Step, Strong, boost, climb},
     study::{Climbed, FirstK, Gate, Pick, Reading, Retrieved, Scheme, climbed, first_k},
-    watch::{Unwatched, Watch},
+    watch::{Unwanted, Unwatched},
 };
 
 struct Selected {
@@ -179,14 +179,8 @@ fn few_or_no_models() {
 
 #[test]
 fn stops_when_cancelled() {
-    struct Stop;
-    impl Watch for Stop {
-        fn cancelled(&self) -> bool {
-            true
-        }
-    }
     let sample = sample(5, 5, 5, 0);
     let selected = Selected::on(&sample);
-    let stopped = retrieval(&sample, Distance::L1, selected.sources(), Draws::default(), &Stop);
+    let stopped = retrieval(&sample, Distance::L1, selected.sources(), Draws::default(), &Unwanted);
     assert_eq!(stopped, Err(Cancelled));
 }
