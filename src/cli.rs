@@ -19,6 +19,7 @@ pub use self::exit::Exit;
 
 mod args;
 mod cache;
+mod config;
 mod doctor;
 mod exit;
 mod interrupt;
@@ -43,7 +44,10 @@ pub fn run() -> ExitCode {
 
 fn dispatch(arguments: Arguments) -> Result<Exit, exit::Failure> {
     match arguments.command {
-        Some(Command::Report(arguments)) => report::run(&arguments),
+        Some(Command::Report(mut arguments)) => {
+            arguments.arguments = config::load()?.complete(arguments.arguments);
+            report::run(&arguments)
+        }
         Some(Command::Spectrum(arguments)) => spectrum::run(&arguments),
         Some(Command::Synth(arguments)) => synth::run(&arguments),
         Some(Command::Cache(arguments)) => cache::run(&arguments),
@@ -51,7 +55,7 @@ fn dispatch(arguments: Arguments) -> Result<Exit, exit::Failure> {
         Some(Command::Completions(arguments)) => papers::completions(&arguments),
         Some(Command::Man) => papers::man(),
         None => match &arguments.dir {
-            Some(dir) => open::run(dir, &arguments.study),
+            Some(dir) => open::run(dir, arguments.study, arguments.screen),
             None => Err(exit::Failure::Usage("a folder is needed".to_owned())),
         },
     }

@@ -20,7 +20,7 @@ use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
-    workbench::{Command, State, Update, recipe::Loaded, shape::Style, worker::Worker},
+    workbench::{Command, Mouse, State, Update, recipe::Loaded, shape::Style, worker::Worker},
 };
 
 mod canvas;
@@ -90,6 +90,8 @@ pub struct Opening {
     pub settings: Settings,
     /// What the terminal can show; [`look`] finds out.
     pub look: Look,
+    /// The mouse is listened to from the beginning.
+    pub mouse: bool,
     /// The recipe to begin with; its parameters are `settings` already.
     pub recipe: Option<Loaded>,
     /// The last session of the data set, which is offered.
@@ -119,6 +121,9 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
         recipe.show(&mut state);
     } else if let Some(last) = opening.last.filter(|last| last.differs(&state)) {
         state.offer(last);
+    }
+    if opening.mouse {
+        state.mouse = Mouse::Screen;
     }
     if opening.look.ascii {
         state.style = Style::Plain;

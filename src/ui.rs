@@ -17,13 +17,16 @@
 //! Colours are the terminal's own sixteen, and none of them carries a meaning alone: there is always a mark, a word or
 //! an attribute beside it ([`Look`]).
 
-use self::{look::Role, pane::Pane};
+use self::{
+    look::Role,
+    pane::{Pane, Targets},
+};
 pub use self::{
     look::{Look, Shades},
     text::clean,
 };
-use crate::workbench::{State, View, shape::TALL};
-use ratatui::{Frame, layout::Rect};
+use crate::workbench::{Action, State, View, shape::TALL};
+use ratatui::{Frame, buffer::Buffer, layout::Rect};
 
 mod ascii;
 mod compare;
@@ -68,6 +71,21 @@ pub fn render(state: &State, look: Look, frame: &mut Frame<'_>) {
     if look.ascii {
         ascii::plain(frame.buffer_mut());
     }
+}
+
+/// What a click at a column and row of the screen does; nothing where there is nothing to be clicked.
+#[must_use]
+pub fn clicked(state: &State, look: Look, (column, row): (u16, u16)) -> Vec<Action> {
+    let area = Rect::new(0, 0, state.size.0, state.size.1);
+    if area.width < LEAST.0 || area.height < LEAST.1 {
+        return Vec::new();
+    }
+    let mut buffer = Buffer::empty(area);
+    let targets = Targets::default();
+    screen(state, &mut Pane::new(&mut buffer, area, look).with_targets(&targets));
+    let hit = |(area, _): &(Rect, Vec<Action>)| area.contains((column, row).into());
+    // What was drawn last lies on top.
+    targets.into_inner().into_iter().rfind(hit).map(|(_, actions)| actions).unwrap_or_default()
 }
 
 fn too_small(pane: &mut Pane<'_>) {

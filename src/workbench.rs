@@ -18,7 +18,7 @@ pub use self::{
     models::{Filter, ModelList, Only, Sort},
     palette::Palette,
     pins::{Pin, Sweep},
-    state::{Change, Figure, Notice, Purpose, State, View},
+    state::{Change, Figure, Mouse, Notice, Purpose, State, View},
     trial::{Figures, Trial},
     update::update,
     why::{Matrix, Side, Why},

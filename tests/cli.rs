@@ -93,6 +93,28 @@ fn the_doctor_says_what_it_finds() {
 }
 
 #[test]
+fn a_configuration_is_read_and_its_errors_name_the_line() {
+    let room = Room::with_study();
+    let file = room.home().join("config/eigenselect/config.toml");
+    fs::create_dir_all(file.parent().unwrap()).unwrap();
+    fs::write(&file, "threads = 1\n[set]\nkmax = 7\n[cache]\ndir = \"kept\"\nlimit = \"1M\"\n").unwrap();
+    let well = tui(&room, &["doctor", "shapes"]);
+    let line = |word: &str| well.out.lines().find(|line| line.contains(word)).unwrap_or_default().to_owned();
+    assert!(line("config ").ends_with("config.toml: kmax=7"), "{}", well.out);
+    assert!(line("threads").contains("1 models") && line("cache").contains("kept"), "{}", well.out);
+    // A report gives everybody the same figures: of the configuration it takes the place of the cache.
+    let report = tui(&room, &["report", "shapes", "--set", "kmax=20", "--format", "json"]);
+    assert_eq!(report.code, Some(0), "{}", report.err);
+    assert!(room.path("kept").is_dir() && report.out.contains("\"kmax\": 20"));
+    fs::write(&file, "threads = 1\n[set]\nkmax = 0\n").unwrap();
+    let wrong = tui(&room, &["report", "shapes"]);
+    assert_eq!(wrong.code, Some(1));
+    assert!(wrong.err.contains("config.toml:3: kmax takes"), "{}", wrong.err);
+    let ill = tui(&room, &["doctor", "shapes"]);
+    assert!(ill.out.lines().any(|line| line.starts_with("BAD  config") && line.contains(":3:")), "{}", ill.out);
+}
+
+#[test]
 fn completions_and_manual_are_made_from_the_arguments() {
     let room = Room::new();
     for shell in ["bash", "zsh", "fish"] {

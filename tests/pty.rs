@@ -22,7 +22,8 @@ use eigenselect::{
 };
 use portable_pty::CommandBuilder;
 use rustix::process::Signal;
-use seat::{Seat, at_heavy, at_small, folder};
+use seat::{Seat, at_heavy, at_small, folder, small};
+use vt100::MouseProtocolMode;
 
 const RIGHT: &str = "\x1b[C";
 const CTRL_C: &str = "\x03";
@@ -65,7 +66,7 @@ fn a_parameter_is_turned_and_the_value_changes() {
 #[test]
 fn a_second_start_finds_the_spectra_and_shows_them_at_once() {
     let cache = folder("warm");
-    let arguments = [seat::small(), "--cache", cache.to_str().unwrap(), "--set", "kmax=30"];
+    let arguments = [small(), "--cache", cache.to_str().unwrap(), "--set", "kmax=30"];
     for start in 0..2 {
         let mut seat = Seat::at_tui(&arguments);
         seat.until_settled();
@@ -122,6 +123,39 @@ fn quitting_does_not_wait_for_the_spectra() {
 }
 
 #[test]
+fn the_mouse_is_the_terminals_until_it_is_asked_for_and_after_every_end() {
+    let listens = |seat: &Seat| seat.look(|screen| screen.mouse_protocol_mode() != MouseProtocolMode::None);
+    let mut seat = at_small("mouse");
+    seat.until_shown("up to date");
+    assert!(!listens(&seat));
+    seat.press("M");
+    seat.until("the mouse to be listened to", |screen| screen.mouse_protocol_mode() != MouseProtocolMode::None);
+    // The tab of the tables: column 17 of the second row.
+    seat.press("\x1b[<0;17;2M\x1b[<0;17;2m");
+    seat.until_shown("Table 1:");
+    seat.signal(Signal::TERM);
+    assert_eq!(seat.end().exit_code(), 143);
+    assert!(!listens(&seat));
+    seat.assert_restored();
+}
+
+#[test]
+fn what_the_engine_does_is_logged() {
+    let file = folder("log").join("tui.log");
+    let cache = folder("logged").to_str().unwrap().to_owned();
+    let mut seat =
+        Seat::at_tui(&[small(), "--cache", &cache, "--set", "kmax=20", "--mouse", "--log", file.to_str().unwrap()]);
+    seat.until_shown("up to date");
+    seat.press("J");
+    seat.until_shown("study of");
+    seat.press("qq");
+    assert_eq!(seat.end().exit_code(), 0);
+    seat.assert_restored();
+    let log = std::fs::read_to_string(&file).unwrap();
+    assert!(log.starts_with("# eigenselect ") && log.contains(" note    spectra: "), "{log}");
+}
+
+#[test]
 fn signals_give_the_terminal_back() {
     for (signal, code) in [(Signal::TERM, 143), (Signal::HUP, 129), (Signal::INT, 130)] {
         let mut seat = at_heavy("signals");
@@ -156,7 +190,7 @@ fn window_program() {
 fn a_closed_window_ends_the_program() {
     let mut window = std::process::Command::new(std::env::current_exe().unwrap())
         .args(["--ignored", "--exact", "window_program", "--nocapture", "--test-threads=1"])
-        .env(seat::SMALL, seat::small())
+        .env(seat::SMALL, small())
         .stdout(std::process::Stdio::piped())
         .spawn()
         .unwrap();
@@ -192,7 +226,7 @@ fn ctrl_z_gives_the_terminal_to_the_shell_and_fg_takes_it_again() {
     let mut seat = Seat::at(shell, 80, 24);
     seat.until_shown("ready> ");
     let settings = seat.settings();
-    let tui = format!("'{}' '{}' --cache '{}'\n", env!("CARGO_BIN_EXE_tui"), seat::small(), cache.display());
+    let tui = format!("'{}' '{}' --cache '{}'\n", env!("CARGO_BIN_EXE_tui"), small(), cache.display());
     seat.press(&tui);
     seat.until("screen", vt100::Screen::alternate_screen);
     seat.until_shown("eigenselect");
@@ -357,7 +391,7 @@ fn files_with_hostile_names_do_nothing_to_the_terminal() {
         entries.sort();
         entries
     };
-    let splits = inside(seat::small().as_ref()).into_iter().filter(|split| split.is_dir());
+    let splits = inside(small().as_ref()).into_iter().filter(|split| split.is_dir());
     for split in splits {
         for (place, class) in inside(&split).iter().enumerate() {
             let own = data.join(split.file_name().unwrap()).join(std::ffi::OsStr::from_bytes(names[place]));
@@ -411,6 +445,7 @@ fn faulty_program() {
         title: "data".to_owned(),
         settings: Settings::default(),
         look: Look::default(),
+        mouse: false,
         recipe: None,
         last: None,
     };

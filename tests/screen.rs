@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "screen/clicks.rs"]
+mod clicks;
 #[path = "screen/experiment.rs"]
 mod experiment;
 #[path = "screen/figures.rs"]

@@ -14,7 +14,7 @@ use crate::{
 };
 
 mod spectrum;
-mod values;
+pub(super) mod values;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,6 +60,19 @@ pub(super) struct Arguments {
     pub(super) dir: Option<PathBuf>,
     #[command(flatten)]
     pub(super) study: StudyArguments,
+    #[command(flatten)]
+    pub(super) screen: ScreenArguments,
+}
+
+/// What the screen alone understands.
+#[derive(Debug, Args)]
+pub(super) struct ScreenArguments {
+    /// Write to FILE what the engine does, a line each, with its time
+    #[arg(long, value_name = "FILE")]
+    pub(super) log: Option<PathBuf>,
+    /// Listen to the mouse: wheel and click (M does, too); the terminal's own selection then needs Shift
+    #[arg(long)]
+    pub(super) mouse: bool,
 }
 
 /// The commands besides opening the screen.

@@ -8,6 +8,7 @@ use std::{
 
 use super::{
     args::{CacheArguments, CacheCommand},
+    config,
     exit::{Exit, Failure, chain, complain},
     output,
 };
@@ -17,7 +18,8 @@ use crate::store::{self, Limits, Repair, Tally};
 pub(super) fn run(arguments: &CacheArguments) -> Result<Exit, Failure> {
     let (CacheCommand::Stats { place } | CacheCommand::Verify { place, .. } | CacheCommand::Prune { place, .. }) =
         &arguments.command;
-    let folder = store::locate(&place.data, place.cache.as_deref());
+    let given = place.cache.clone().or(config::load()?.cache.dir);
+    let folder = store::locate(&place.data, given.as_deref());
     // A cache that is not there yet is an error only where it was named.
     if !folder.is_dir() {
         if place.cache.is_some() {

@@ -10,7 +10,8 @@ use std::{
 use clap::Args;
 
 use super::{
-    exit::{Exit, Failure},
+    config,
+    exit::{Exit, Failure, chain},
     output,
     study::{open_store, threads},
 };
@@ -30,9 +31,15 @@ pub(super) struct DoctorArguments {
 /// Says how things are; the exit code is 1 when something is wrong.
 pub(super) fn run(arguments: &DoctorArguments) -> Result<Exit, Failure> {
     let mut report = Report::default();
+    let config = config::load();
     screen(&mut report);
-    cache(&mut report, &arguments.data, arguments.cache.as_deref());
-    report.good("threads", &format!("{} models are solved at once", threads(None)));
+    match &config {
+        Ok(config) => report.good("config", &config::said(config)),
+        Err(error) => report.bad("config", &chain(error)),
+    }
+    let config = config.unwrap_or_default();
+    cache(&mut report, &arguments.data, arguments.cache.as_deref().or(config.cache.dir.as_deref()));
+    report.good("threads", &format!("{} models are solved at once", threads(config.threads)));
     data(&mut report, &arguments.data);
     output::print(report.text.as_bytes())?;
     Ok(if report.bad { Exit::Failed } else { Exit::Done })

@@ -12,6 +12,7 @@ use std::{
 
 use super::{
     args::{SpectrumArguments, SpectrumFormat},
+    config,
     exit::{Exit, Failure, complain},
     interrupt::Interrupt,
     output,
@@ -40,11 +41,12 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     }
     let interrupt = Interrupt::listen().map_err(|error| Failure::caused("Ctrl-C cannot be listened to", error))?;
 
-    let store =
-        (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], arguments.cache.as_deref())));
+    let config = config::load()?;
+    let given = arguments.cache.as_deref().or(config.cache.dir.as_deref());
+    let store = (!arguments.no_cache).then(|| study::open_store(&place(&arguments.meshes[0], given)));
     let singles = Singles::new(store.clone());
     let problem = arguments.problem();
-    let solved = solve(&singles, arguments, problem, interrupt);
+    let solved = solve(&singles, arguments, problem, arguments.threads.or(config.threads), interrupt);
 
     let mut spectra = Spectra::new();
     for (path, solved) in arguments.meshes.iter().zip(solved) {
@@ -84,9 +86,10 @@ fn solve(
     singles: &Singles,
     arguments: &SpectrumArguments,
     problem: Problem,
+    threads: Option<u16>,
     interrupt: Interrupt,
 ) -> Vec<Result<Single, SingleError>> {
-    let (threads, count) = (study::threads(arguments.threads), arguments.count);
+    let (threads, count) = (study::threads(threads), arguments.count);
     if let [mesh] = &arguments.meshes[..] {
         let watch = Progress::new("eigenvalues", "eigenvalues", interrupt);
         return vec![singles.crew().with(threads, || singles.solve(mesh, problem, count, &watch))];

@@ -18,11 +18,22 @@ use signal_hook::{
 
 use crate::workbench::{Update, keymap::Key};
 
+/// What the user did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Press {
+    /// A key.
+    Key(Key),
+    /// A click on a column and a row, from 0.
+    Click((u16, u16)),
+}
+
 /// Something that happened.
 #[derive(Debug)]
 pub(super) enum Event {
     /// A key was pressed.
     Key(Key),
+    /// The mouse was clicked on a column and a row, from 0.
+    Click((u16, u16)),
     /// The window has another size.
     Resized,
     /// News from the engine.

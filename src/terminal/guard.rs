@@ -1,7 +1,7 @@
 //! Raw mode and the alternate screen, given back whatever happens.
 
 use std::{
-    io,
+    io::{self, Write as _},
     panic::{self, PanicHookInfo},
     sync::{
         Arc, Mutex, PoisonError,
@@ -24,6 +24,12 @@ static OURS: AtomicBool = AtomicBool::new(false);
 
 /// So many panics of other threads are remembered.
 const PANICS: usize = 20;
+
+/// True while the mouse is listened to; remembered while the terminal is the shell's.
+static MOUSE: AtomicBool = AtomicBool::new(false);
+/// Presses and the wheel, with their places in the SGR encoding (xterm's control sequences, "Mouse Tracking").
+const LISTEN: &[u8] = b"\x1b[?1000h\x1b[?1006h";
+const IGNORE: &[u8] = b"\x1b[?1006l\x1b[?1000l";
 
 type Hook = dyn Fn(&PanicHookInfo<'_>) + Send + Sync;
 
@@ -84,10 +90,23 @@ pub(super) fn take() -> io::Result<()> {
     // First, so that whatever follows is undone even when it fails half-way.
     OURS.store(true, Ordering::SeqCst);
     let taken = terminal::enable_raw_mode().and_then(|()| execute!(io::stdout(), EnterAlternateScreen, Hide));
+    let taken = taken.and_then(|()| if MOUSE.load(Ordering::SeqCst) { say(LISTEN) } else { Ok(()) });
     if taken.is_err() {
         restore();
     }
     taken
+}
+
+fn say(bytes: &[u8]) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes)?;
+    out.flush()
+}
+
+/// Listens to the mouse, or no longer.
+pub(super) fn mouse(on: bool) -> io::Result<()> {
+    MOUSE.store(on, Ordering::SeqCst);
+    say(if on { LISTEN } else { IGNORE })
 }
 
 /// Gives the terminal back, once. What fails cannot be helped: the terminal may be gone.
@@ -96,6 +115,9 @@ pub(super) fn take() -> io::Result<()> {
 /// the shell's screen.
 pub(super) fn restore() {
     if OURS.swap(false, Ordering::SeqCst) {
+        if MOUSE.load(Ordering::SeqCst) {
+            let _ = say(IGNORE);
+        }
         let _ = execute!(
             io::stdout(),
             EndSynchronizedUpdate,

@@ -14,7 +14,7 @@ use rustix::{
 };
 
 use super::{
-    events::{Event, Queue},
+    events::{Event, Press, Queue},
     keys::Keys,
 };
 
@@ -71,8 +71,11 @@ fn read(queue: &Queue, stopped: &PipeReader) {
         match rustix::io::read(&stdin, &mut bytes) {
             Ok(0) => break,
             Ok(count) => {
-                for key in keys.feed(&bytes[..count]) {
-                    queue.send(Event::Key(key));
+                for press in keys.feed(&bytes[..count]) {
+                    queue.send(match press {
+                        Press::Key(key) => Event::Key(key),
+                        Press::Click(place) => Event::Click(place),
+                    });
                 }
             }
             Err(Errno::INTR | Errno::AGAIN) => {}

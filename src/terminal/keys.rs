@@ -4,6 +4,7 @@
 //! well-formed sequence is passed over. Pasted text is typed text. Escape and a character in one packet, which slow
 //! lines make of two presses, are two keys: the keymap knows no Alt.
 
+use super::events::Press;
 use crate::workbench::keymap::Key;
 
 /// No key is longer; what is, is noise.
@@ -20,13 +21,15 @@ pub(super) struct Keys {
 enum Head {
     /// So many bytes, and the key that they mean, if any.
     Whole(usize, Option<Key>),
+    /// So many bytes, and the column and row of a click.
+    Click(usize, (u16, u16)),
     /// The beginning of something.
     Part,
 }
 
 impl Keys {
     /// Takes bytes, gives the keys that are whole.
-    pub(super) fn feed(&mut self, bytes: &[u8]) -> Vec<Key> {
+    pub(super) fn feed(&mut self, bytes: &[u8]) -> Vec<Press> {
         self.pending.extend_from_slice(bytes);
         let mut keys = Vec::new();
         let mut at = 0;
@@ -34,7 +37,11 @@ impl Keys {
             match head(&self.pending[at..]) {
                 Head::Whole(used, key) => {
                     at += used;
-                    keys.extend(key);
+                    keys.extend(key.map(Press::Key));
+                }
+                Head::Click(used, place) => {
+                    at += used;
+                    keys.push(Press::Click(place));
                 }
                 Head::Part => break,
             }
@@ -109,6 +116,9 @@ fn control_sequence(rest: &[u8]) -> Head {
         // Broken off by something that is no part of it.
         return Head::Whole(BEGUN + end, None);
     }
+    if let Some(numbers) = rest[..end].strip_prefix(b"<") {
+        return mouse(numbers, rest[end], BEGUN + end + 1);
+    }
     let numbers: Vec<u16> = rest[..end]
         .split(|byte| *byte == b';')
         .map(|digits| std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).unwrap_or(0))
@@ -123,6 +133,21 @@ fn control_sequence(rest: &[u8]) -> Head {
         last => single_shift(last),
     };
     Head::Whole(BEGUN + end + 1, key)
+}
+
+/// What xterm's SGR encoding tells of the mouse: a button, a column and a row from 1, `M` when it goes down. Shift, Alt
+/// and Ctrl, moves and releases mean nothing.
+fn mouse(numbers: &[u8], last: u8, used: usize) -> Head {
+    let numbers: Vec<u16> = numbers
+        .split(|byte| *byte == b';')
+        .filter_map(|digits| std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()))
+        .collect();
+    match (&numbers[..], last) {
+        (&[0, column, row], b'M') if column > 0 && row > 0 => Head::Click(used, (column - 1, row - 1)),
+        ([64, _, _], b'M') => Head::Whole(used, Some(Key::WheelUp)),
+        ([65, _, _], b'M') => Head::Whole(used, Some(Key::WheelDown)),
+        _ => Head::Whole(used, None),
+    }
 }
 
 /// Keys that are told by one letter, after `ESC O` or `ESC [`.
@@ -162,9 +187,23 @@ mod tests {
 
     fn keys(bytes: &[u8]) -> Vec<Key> {
         let mut stream = Keys::default();
-        let mut keys = stream.feed(bytes);
+        let mut keys = whole(stream.feed(bytes));
         keys.extend(stream.give_up());
         keys
+    }
+
+    fn whole(presses: Vec<Press>) -> Vec<Key> {
+        presses.into_iter().filter_map(|press| if let Press::Key(key) = press { Some(key) } else { None }).collect()
+    }
+
+    #[test]
+    fn the_mouse_is_told_in_sgr() {
+        let mut stream = Keys::default();
+        let presses = stream.feed(b"\x1b[<0;12;3M\x1b[<0;12;3m\x1b[<64;1;1M\x1b[<65;1;1M\x1b[<35;9;9M\x1b[<2;1;1M");
+        assert_eq!(presses, [Press::Click((11, 2)), Press::Key(Key::WheelUp), Press::Key(Key::WheelDown)]);
+        for bytes in [&b"\x1b[<M"[..], b"\x1b[<0;0;0M", b"\x1b[<0;1M", b"\x1b[<0;99999999;1M"] {
+            assert_eq!(stream.feed(bytes), [], "{bytes:?}");
+        }
     }
 
     #[test]
@@ -218,7 +257,7 @@ mod tests {
         assert_eq!(keys(b"\x1b[12\x1b[A"), [Key::Up]);
         let mut endless = Keys::default();
         assert_eq!(endless.feed(&[b"\x1b[".as_slice(), &[b'1'; 100]].concat()), []);
-        assert_eq!(endless.feed(b"q"), [Key::Char('q')]);
+        assert_eq!(endless.feed(b"q"), [Press::Key(Key::Char('q'))]);
     }
 
     #[test]
@@ -233,7 +272,7 @@ mod tests {
             let known = [&b"\x1b[A"[..], b"\x1b[1;2D", b"\x1bOP", b"\x1b[[A", "é".as_bytes(), "🐘".as_bytes(), b"q", b"\x1b[24~", b"\r"];
             let bytes = presses.iter().flat_map(|press| known[*press]).copied().collect::<Vec<u8>>();
             let mut stream = Keys::default();
-            let pieces: Vec<Key> = bytes.chunks(cut).flat_map(|piece| stream.feed(piece)).collect();
+            let pieces: Vec<Key> = bytes.chunks(cut).flat_map(|piece| whole(stream.feed(piece))).collect();
             prop_assert_eq!(pieces.len(), presses.len());
             prop_assert_eq!(pieces, keys(&bytes));
             prop_assert!(!stream.waits());
@@ -244,7 +283,7 @@ mod tests {
             let mut stream = Keys::default();
             stream.feed(&noise);
             stream.give_up();
-            prop_assert_eq!(stream.feed(b"q"), [Key::Char('q')]);
+            prop_assert_eq!(stream.feed(b"q"), [Press::Key(Key::Char('q'))]);
         }
     }
 }

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     figure::base64,
     ui::{self, Look},
-    workbench::State,
+    workbench::{Action, State},
 };
 
 /// A surface that the session draws on.
@@ -29,6 +29,10 @@ pub(super) trait Surface {
     fn forget(&mut self) -> io::Result<()>;
     /// Gives a text to the terminal's clipboard.
     fn copy(&mut self, text: &str) -> io::Result<()>;
+    /// Listens to the mouse, or no longer.
+    fn mouse(&mut self, on: bool) -> io::Result<()>;
+    /// What a click at a column and row does.
+    fn clicked(&self, state: &State, place: (u16, u16)) -> Vec<Action>;
     /// Gives the terminal to the shell and asks it to stop us.
     fn suspend(&mut self) -> io::Result<()>;
     /// Takes the terminal again.
@@ -93,6 +97,14 @@ impl Surface for Screen {
         let mut out = io::stdout().lock();
         out.write_all(sequence.as_bytes())?;
         out.flush()
+    }
+
+    fn mouse(&mut self, on: bool) -> io::Result<()> {
+        guard::mouse(on)
+    }
+
+    fn clicked(&self, state: &State, place: (u16, u16)) -> Vec<Action> {
+        ui::clicked(state, self.look, place)
     }
 
     fn suspend(&mut self) -> io::Result<()> {

@@ -10,7 +10,7 @@ use std::{
 use signal_hook::consts::SIGINT;
 
 use super::{Ending, Engine, Exit, events::Event, screen::Surface};
-use crate::workbench::{Action, Effect, Leave, State, Update, keymap, recipe, update};
+use crate::workbench::{Action, Effect, Leave, Mouse, State, Update, keymap, recipe, update};
 
 /// So many events happen before a frame at most: a flood must not keep the screen from being drawn.
 const BATCH: usize = 256;
@@ -80,6 +80,9 @@ struct Session<'a, E, S> {
 impl<E: Engine, S: Surface> Session<'_, E, S> {
     fn run(&mut self, inbox: &Receiver<Event>) -> io::Result<Ending> {
         self.measure()?;
+        if self.state.mouse == Mouse::Screen {
+            self.surface.mouse(true)?;
+        }
         loop {
             self.draw()?;
             let Some(first) = self.wait(inbox) else { continue };
@@ -131,6 +134,16 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                     return self.act(action);
                 }
             }
+            Event::Click(place) if self.state.mouse == Mouse::Screen => {
+                for action in self.surface.clicked(&self.state, place) {
+                    self.due.sooner(Due::Now);
+                    if let Some(exit) = self.act(action)? {
+                        return Ok(Some(exit));
+                    }
+                }
+            }
+            // On its way when the mouse was let go.
+            Event::Click(_) => {}
             Event::Resized => self.measure()?,
             Event::Update(Update::Answer(answer)) => {
                 let awaited =
@@ -202,6 +215,7 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                 Effect::Leave(Leave::Interrupt) => return Ok(Some(Exit::Interrupted)),
                 Effect::Redraw => self.surface.forget()?,
                 Effect::Copy(text) => self.surface.copy(&text)?,
+                Effect::Mouse(on) => self.surface.mouse(on)?,
                 Effect::Suspend => {
                     self.surface.suspend()?;
                     // After this we have been stopped and continued, or nobody is there to stop us.

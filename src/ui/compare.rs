@@ -13,6 +13,8 @@
 //!  HCBw for ε over kmax 20 – 500           (the curve as it fills)
 //! ```
 
+use ratatui::layout::Rect;
+
 use super::{
     dots::Stroke,
     heading::{Note, heading},
@@ -26,7 +28,7 @@ use crate::{
     query::Settings,
     study::Method,
     workbench::{
-        Figures, State, lists,
+        Action, Figures, State, lists,
         pins::{self, Sweep},
     },
 };
@@ -89,14 +91,17 @@ fn table(state: &State, pane: &mut Pane<'_>) {
     let now = present.scores(method, &state.settings);
     line(pane, 2, "now", now, &selected(&present, method, &state.settings));
     let at = state.pin.min(state.pins.len().saturating_sub(1));
-    for (line_of, place) in (0_u16..).zip(lists::pinned(state)) {
+    let lines = lists::pinned(state);
+    let at_line = lines.iter().position(|place| *place == at).unwrap_or(0);
+    for (line_of, place) in (0_u16..).zip(lines) {
         let pin = &state.pins[place];
         let y = 3 + 2 * line_of;
         let values = pin.figures.scores(method, &pin.settings);
         line(pane, y, &pin.letter.to_string(), values, &selected(&pin.figures, method, &pin.settings));
+        pane.target(Rect::new(0, y, pane.width(), 2), [Action::Scroll(line_of as isize - at_line as isize)]);
         if place == at {
             let style = pane.style(Role::Chosen);
-            pane.paint(ratatui::layout::Rect::new(0, y, 3, 1), style);
+            pane.paint(Rect::new(0, y, 3, 1), style);
         }
         for (column, (now, then)) in (0..).zip(now.into_iter().zip(values)) {
             let (Some(now), Some(then)) = (now, then) else { continue };

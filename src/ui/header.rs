@@ -5,10 +5,12 @@
 //!  1 Overview  2 Curves  3 Tables  4 Selection  5!Pipeline  6×Models  …
 //! ```
 
+use ratatui::layout::Rect;
+
 use super::{look::Role, number, pane::Pane, text};
 use crate::{
     dataset::Role as Side,
-    workbench::{State, View},
+    workbench::{Action, State, View},
 };
 
 /// One line: program, data set, its members.
@@ -79,6 +81,8 @@ pub(super) fn tabs(state: &State, pane: &mut Pane<'_>) {
         let warn = if here { role } else { Role::Warn };
         let digit = format!(" {gap}{digit}");
         let digit = if gap.is_empty() { digit } else { digit[1..].to_owned() };
+        let from = x;
         x = pane.spans(x, 0, [(digit.as_str(), role), (mark.as_str(), warn), (shown, role), (gap, role)]);
+        pane.target(Rect::new(from, 0, x - from, 1), [Action::Show(view)]);
     }
 }

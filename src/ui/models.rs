@@ -26,7 +26,7 @@ use super::{
 use crate::{
     dataset::Role as Side,
     query::{Answer, ModelRow, ModelState, Source},
-    workbench::{Filter, Sort, State, pictured, shape::THUMB},
+    workbench::{Action, Filter, Sort, State, pictured, shape::THUMB},
 };
 
 /// The view.
@@ -132,6 +132,9 @@ fn list_of(state: &State, listed: &[usize], pane: &mut Pane<'_>) {
     let first = at.saturating_sub(rows / 2).min(listed.len().saturating_sub(rows));
     for (y, (place, &index)) in (1..).zip(listed.iter().enumerate().skip(first).take(rows)) {
         let model = &answer.models[index];
+        let by = place as isize - at as isize;
+        let action = if by == 0 { Action::Open } else { Action::Scroll(by) };
+        pane.target(Rect::new(0, y, pane.width(), 1), [action]);
         let (mark, role) = mark(model);
         pane.put(1, y, mark, role);
         pane.put(3, y, &text::fit_end(names.of(model), name), Role::Plain);

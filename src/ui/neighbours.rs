@@ -29,7 +29,7 @@ use crate::{
     dataset::Role as Member,
     query::{Finding, ModelRow, Question},
     study::why::{Neighbours, Votes},
-    workbench::{Answered, State, Why, first_pictured, lists, pictured, shape::THUMB},
+    workbench::{Action, Answered, State, Why, first_pictured, lists, pictured, shape::THUMB},
 };
 
 mod terms;
@@ -222,7 +222,7 @@ fn neighbours(
         pane.put_right(distance_end, y, &number::short(neighbour.distance), Role::Plain);
         let (bar, _) = footer::bar(neighbour.distance / scale.max(f64::MIN_POSITIVE), 6);
         pane.put(distance_end + 1, y, &bar, if own { Role::Good } else { Role::Bad });
-        choose(place == at, y, pane);
+        choose(listed, at, y, pane);
     }
 }
 
@@ -243,12 +243,17 @@ fn classes(state: &State, votes: &Votes, (listed, at): (&[usize], usize), pane: 
         pane.put(7, y, &named, if own { Role::Strong } else { Role::Plain });
         pane.put_right(end + 8, y, &format!("{:+.2}", vote.score), Role::Plain);
         pane.put_right(end + 15, y, &format!("{:.3}", vote.probability), Role::Plain);
-        choose(place == at, y, pane);
+        choose(listed, at, y, pane);
     }
 }
 
-fn choose(chosen: bool, y: u16, pane: &mut Pane<'_>) {
-    if chosen {
+/// Marks the row of the cursor; a click moves it here, or opens what it is on.
+fn choose(listed: &[usize], at: usize, y: u16, pane: &mut Pane<'_>) {
+    let cursor = listed.iter().position(|place| *place == at).unwrap_or(0);
+    let by = isize::try_from(y).unwrap_or(1) - 1 - cursor as isize;
+    let action = if by == 0 { Action::Open } else { Action::Scroll(by) };
+    pane.target(Rect::new(0, y, pane.width(), 1), [action]);
+    if by == 0 {
         let style = pane.style(Role::Chosen);
         pane.paint(Rect::new(0, y, pane.width(), 1), style);
     }

@@ -10,7 +10,7 @@
 use ratatui::layout::Rect;
 
 use super::{help, look::Role, pane::Pane, text};
-use crate::workbench::{State, palette};
+use crate::workbench::{Action, State, palette};
 
 /// Columns and rows of the box at most.
 const MOST: (u16, u16) = (76, 20);
@@ -47,6 +47,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     for (y, (place, pick)) in (1..).zip(picks.iter().enumerate().skip(first).take(rows)) {
         let key = text::keys(&pick.key, pane.look().ascii);
         let room = (wide as usize).saturating_sub(5 + text::width(&key));
+        let by = place as isize - at as isize;
+        pane.target(Rect::new(1, y, wide.saturating_sub(2), 1), [Action::Scroll(by), Action::Pick]);
         pane.put(2, y, &text::fit(&pick.text, room), Role::Plain);
         pane.put_right(wide.saturating_sub(2), y, &key, Role::Train);
         if place == at {

@@ -1,5 +1,7 @@
 //! A part of the frame that can be written on without ever leaving it.
 
+use std::cell::RefCell;
+
 use ratatui::{
     buffer::Buffer,
     layout::Rect,
@@ -10,23 +12,40 @@ use super::{
     look::{Look, Role},
     text,
 };
+use crate::workbench::Action;
+
+/// What clicks do where, in the order in which it was drawn.
+pub(super) type Targets = RefCell<Vec<(Rect, Vec<Action>)>>;
 
 /// A rectangle of the frame. Coordinates given to it count from its own corner; what lies outside is not drawn.
 pub(super) struct Pane<'a> {
     buffer: &'a mut Buffer,
     area: Rect,
     look: Look,
+    targets: Option<&'a Targets>,
 }
 
 impl<'a> Pane<'a> {
     pub(super) fn new(buffer: &'a mut Buffer, area: Rect, look: Look) -> Self {
         let area = area.intersection(buffer.area);
-        Self { buffer, area, look }
+        Self { buffer, area, look, targets: None }
+    }
+
+    /// The same, noting what a click does where.
+    pub(super) fn with_targets(self, targets: &'a Targets) -> Self {
+        Self { targets: Some(targets), ..self }
+    }
+
+    /// A click on this rectangle, given in the pane's coordinates, lets these actions happen.
+    pub(super) fn target(&self, area: Rect, actions: impl IntoIterator<Item = Action>) {
+        let Some(targets) = self.targets else { return };
+        let area = Rect { x: self.area.x.saturating_add(area.x), y: self.area.y.saturating_add(area.y), ..area };
+        targets.borrow_mut().push((area.intersection(self.area), actions.into_iter().collect()));
     }
 
     /// The part of the pane in `area`, which is given in the frame's coordinates.
     pub(super) fn part(&mut self, area: Rect) -> Pane<'_> {
-        Pane { area: area.intersection(self.area), buffer: self.buffer, look: self.look }
+        Pane { area: area.intersection(self.area), buffer: self.buffer, look: self.look, targets: self.targets }
     }
 
     /// Its place in the frame.

@@ -20,7 +20,7 @@ use super::{footer, look::Role, pane, pane::Pane, text};
 use crate::{
     laplacian::Operator,
     query::Parameter,
-    workbench::{State, parameters},
+    workbench::{Action, State, parameters},
 };
 
 /// Lines kept for the chosen parameter in words, with the gap above.
@@ -80,7 +80,12 @@ pub(super) fn column(state: &State, pane: &mut Pane<'_>) {
             Line::Title(title) => {
                 pane.put(1, y, title, Role::Faint);
             }
-            Line::Knob(parameter) => row(state, *parameter, y, pane),
+            Line::Knob(parameter) => {
+                // A second click on the chosen one is for its value.
+                let action = if *parameter == state.parameter { Action::Edit } else { Action::Choose(*parameter) };
+                pane.target(Rect::new(0, y, pane.width(), 1), [action]);
+                row(state, *parameter, y, pane);
+            }
         }
     }
     let end = pane.width().saturating_sub(1);

@@ -151,6 +151,10 @@ pub enum Action {
     WritePaper,
     /// Show or hide the journal.
     Journal,
+    /// Listen to the mouse, or no longer.
+    ToggleMouse,
+    /// Move the list or the view by so many lines, and no parameter.
+    Scroll(isize),
     /// Sweep over the chosen parameter.
     Sweep,
     /// Show the sweep instead of the pins, or no longer.
@@ -210,6 +214,8 @@ pub enum Effect {
     Redraw,
     /// Give a text to the terminal to copy.
     Copy(String),
+    /// Listen to the mouse, or no longer.
+    Mouse(bool),
 }
 
 /// How a session ends at the user's wish.

@@ -28,6 +28,8 @@ pub enum Key {
     Home,
     End,
     F(u8),
+    WheelUp,
+    WheelDown,
 }
 
 impl Key {
@@ -54,6 +56,8 @@ impl Key {
             Self::Home => "Home".to_owned(),
             Self::End => "End".to_owned(),
             Self::F(number) => format!("F{number}"),
+            Self::WheelUp => "Wheel ↑".to_owned(),
+            Self::WheelDown => "Wheel ↓".to_owned(),
         }
     }
 }

@@ -150,6 +150,16 @@ impl Change {
     }
 }
 
+/// Whose the mouse is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mouse {
+    /// The terminal's, which selects text with it.
+    #[default]
+    Terminal,
+    /// The screen's: wheel and click.
+    Screen,
+}
+
 /// A line for the user, shown until the next key, or only until the next answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
@@ -240,6 +250,8 @@ pub struct State {
     pub pictures: Pictures,
     /// The view has the screen for itself, without the parameters.
     pub alone: bool,
+    /// Whose the mouse is.
+    pub mouse: Mouse,
     /// Lines by which the view is scrolled down; a view stops at its own end.
     pub scroll: usize,
     /// Solving was stopped by the user.
@@ -295,6 +307,7 @@ impl State {
             scenes: Vec::new(),
             pictures: Pictures::default(),
             alone: false,
+            mouse: Mouse::default(),
             scroll: 0,
             stopped: false,
             notice: None,

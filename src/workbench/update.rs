@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Change, Command, Effect, Entry, Figure, Leave, Notice, Palette, Purpose, State, View, asking, experiment,
-    explore, leave, lists, palette, parameters, pins,
+    Action, Change, Command, Effect, Entry, Figure, Leave, Mouse, Notice, Palette, Purpose, State, View, asking,
+    experiment, explore, leave, lists, palette, parameters, pins,
 };
 use crate::query::{Answer, Parameter, Settings};
 
@@ -94,6 +94,13 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Switch => return experiment::switch(state),
         Action::SwitchOff => return experiment::switch_off(state),
         Action::WritePaper => return experiment::document(state),
+        Action::ToggleMouse => {
+            state.mouse = if state.mouse == Mouse::Screen { Mouse::Terminal } else { Mouse::Screen };
+            let ours = state.mouse == Mouse::Screen;
+            let selects = "the mouse is listened to: wheel and click; most terminals select text with Shift";
+            say(state, if ours { selects } else { "the mouse belongs to the terminal" });
+            return vec![Effect::Mouse(ours)];
+        }
         Action::Written(path, outcome) => leave::told(state, &path, outcome),
         Action::WriteView => {
             let proposed = leave::proposed(state);
@@ -169,6 +176,7 @@ fn look(state: &mut State, action: &Action) {
         Action::CompareNone => state.compared.clear(),
         Action::Up => step(state, -1),
         Action::Down => step(state, 1),
+        Action::Scroll(by) => scroll(state, *by),
         Action::PageUp => page(state, -1),
         Action::PageDown => page(state, 1),
         Action::First => scroll(state, -(isize::MAX / 2)),

@@ -84,6 +84,7 @@ pub fn spawn(room: &Room, arguments: &[&str], out: Stdio) -> Child {
         .current_dir(room.dir.path())
         .env("HOME", room.home())
         .env("XDG_CACHE_HOME", room.home().join("cache"))
+        .env("XDG_CONFIG_HOME", room.home().join("config"))
         .env_remove("COLUMNS")
         .stdin(Stdio::null())
         .stdout(out)

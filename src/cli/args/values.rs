@@ -17,7 +17,7 @@ pub(super) fn vertices(text: &str) -> Result<usize, String> {
 }
 
 /// `500M` and the like, in powers of 1024.
-pub(super) fn size(text: &str) -> Result<u64, String> {
+pub(in crate::cli) fn size(text: &str) -> Result<u64, String> {
     let text = text.trim().trim_end_matches(['b', 'B']).trim_end_matches(['i', 'I']);
     let unit = |letter: char| match letter.to_ascii_uppercase() {
         'K' => Some(1_u64 << 10),

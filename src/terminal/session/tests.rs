@@ -10,7 +10,7 @@ use signal_hook::consts::SIGTERM;
 use super::*;
 use crate::{
     query::{Answer, Progress, Settings},
-    workbench::{Command, keymap::Key},
+    workbench::{Command, View, keymap::Key},
 };
 
 /// Remembers what was drawn and asked of it.
@@ -20,6 +20,7 @@ struct Paper {
     forgotten: usize,
     suspended: usize,
     copied: Vec<String>,
+    mouse: Vec<bool>,
     resumed: usize,
     torn: bool,
 }
@@ -42,6 +43,15 @@ impl Surface for Paper {
     fn copy(&mut self, text: &str) -> io::Result<()> {
         self.copied.push(text.to_owned());
         Ok(())
+    }
+
+    fn mouse(&mut self, on: bool) -> io::Result<()> {
+        self.mouse.push(on);
+        Ok(())
+    }
+
+    fn clicked(&self, _: &State, (column, _): (u16, u16)) -> Vec<Action> {
+        if column == 0 { vec![Action::Show(View::Tables)] } else { Vec::new() }
     }
 
     fn suspend(&mut self) -> io::Result<()> {
@@ -224,4 +234,18 @@ fn nothing_is_drawn_while_nothing_happens() {
     run(State::new("data", Settings::default()), &Ear::default(), &mut paper, &inbox).unwrap();
     idle.join().unwrap();
     assert_eq!(paper.drawn.len(), 1);
+}
+
+#[test]
+fn clicks_count_once_the_mouse_is_ours() {
+    let click = || Event::Click((0, 1));
+    let (_, paper, _) = played([click()]);
+    assert!(paper.mouse.is_empty() && paper.drawn.iter().all(|state| state.view == View::Overview));
+    // Pressed keys and quitting come in one batch, so the last frame may be the one before them.
+    let (ending, paper, _) = played([Event::Key(Key::Char('M')), click(), Event::Click((9, 9))]);
+    assert_eq!(paper.mouse, [true]);
+    assert!(ending.session.is_some_and(|session| session.contains("Tables")));
+    let (ending, paper, _) = played([Event::Key(Key::Char('M')), Event::Key(Key::Char('M')), click()]);
+    assert_eq!(paper.mouse, [true, false]);
+    assert!(ending.session.is_some_and(|session| !session.contains("Tables")));
 }

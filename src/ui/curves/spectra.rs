@@ -9,6 +9,8 @@
 //!    ○ b original FEM norm.        off: ≤ 2 min of processor time
 //! ```
 
+use ratatui::layout::Rect;
+
 use super::super::{
     dots::Stroke,
     heading::{Note, heading},
@@ -22,7 +24,7 @@ use super::lettered::{self, Lettered, letter};
 use crate::{
     report::paper::Variant,
     study::FirstK,
-    workbench::{State, experiment::Standing},
+    workbench::{Action, State, experiment::Standing},
 };
 
 /// Columns of a plot from which on two stand side by side.
@@ -96,6 +98,8 @@ fn list(state: &State, all: &[Variant], pane: &mut Pane<'_>) {
     let first = state.experiment.at.saturating_sub(rows / 2).min(all.len().saturating_sub(rows));
     for (y, (place, variant)) in (1..).zip(all.iter().enumerate().skip(first).take(rows)) {
         let on = state.experiment.on.contains(&place);
+        let by = place as isize - state.experiment.at as isize;
+        pane.target(Rect::new(0, y, width, 1), [Action::StepSpectrum(by), Action::Switch]);
         let (role, _) = look(place);
         let x = pane.spans(
             1,

@@ -6,6 +6,9 @@ use super::{
 };
 use crate::query::Parameter;
 
+/// Lines of a step of the wheel.
+const WHEEL: isize = 3;
+
 /// All of it.
 pub(super) fn rows() -> Vec<Row> {
     [in_views(), in_one_view(), explaining(), elsewhere()].concat()
@@ -92,6 +95,8 @@ fn in_views() -> Vec<Row> {
             "",
         ),
         (Views, vec![(Char('J'), Action::Journal)], "", "the journal: what the engine did, and how long it took", ""),
+        (Views, vec![(Char('M'), Action::ToggleMouse)], "", "listen to the mouse: wheel and click, or no longer", ""),
+        (Views, wheel(), "Wheel ↑ Wheel ↓", "scroll the list or the view", ""),
         (Views, vec![(Char('S'), Action::WriteRecipe)], "", "write the session as a recipe", ""),
         (Views, vec![(Char('C'), Action::Copy)], "", "copy what the view shows", ""),
         (Views, vec![(Char('L'), Action::Restore)], "", "take up the last session of the data set", ""),
@@ -210,8 +215,13 @@ fn explaining() -> Vec<Row> {
         ),
         (
             In(View::Shape),
-            vec![(Key::PageUp, Action::Approach(1)), (Key::PageDown, Action::Approach(-1))],
-            "",
+            vec![
+                (Key::PageUp, Action::Approach(1)),
+                (Key::PageDown, Action::Approach(-1)),
+                (Key::WheelUp, Action::Approach(1)),
+                (Key::WheelDown, Action::Approach(-1)),
+            ],
+            "PgUp PgDn  Wheel ↑ Wheel ↓",
             "nearer, farther",
             "nearer",
         ),
@@ -260,6 +270,7 @@ fn elsewhere() -> Vec<Row> {
             "choose a line",
             "choose",
         ),
+        (Palette, wheel(), "Wheel ↑ Wheel ↓", "choose a line", ""),
         (Palette, vec![(Key::Backspace, Action::Erase)], "", "erase a character", ""),
         (Palette, vec![(Ctrl('u'), Action::EraseAll)], "", "erase everything before the caret", ""),
         (Palette, vec![(Left, Action::Left), (Right, Action::Right)], "← →", "move the caret", ""),
@@ -270,6 +281,7 @@ fn elsewhere() -> Vec<Row> {
             "scroll",
             "scroll",
         ),
+        (Help, wheel(), "Wheel ↑ Wheel ↓", "scroll", ""),
         (Help, vec![(Home, Action::First), (End, Action::Last)], "", "to the beginning, to the end", ""),
         (
             Journal,
@@ -278,6 +290,7 @@ fn elsewhere() -> Vec<Row> {
             "scroll",
             "scroll",
         ),
+        (Journal, wheel(), "Wheel ↑ Wheel ↓", "scroll", ""),
         (Journal, vec![(Home, Action::First), (End, Action::Last)], "", "to the newest line, to the oldest", ""),
         (
             Journal,
@@ -297,6 +310,10 @@ fn elsewhere() -> Vec<Row> {
         (Always, vec![(Ctrl('z'), Action::Suspend)], "", "back to the shell; fg returns", ""),
         (Always, vec![(Ctrl('l'), Action::Redraw)], "", "draw the screen anew", ""),
     ]
+}
+
+fn wheel() -> Vec<(Key, Action)> {
+    vec![(Key::WheelUp, Action::Scroll(-WHEEL)), (Key::WheelDown, Action::Scroll(WHEEL))]
 }
 
 fn letters() -> Vec<(Key, Action)> {

@@ -24,8 +24,9 @@ fn moods() -> Vec<State> {
 
 #[test]
 fn no_key_means_two_things_in_one_place() {
-    // A view with a cursor of its own moves it with the arrows and opens what is under it.
-    let cursor = [Key::Up, Key::Down, Key::Left, Key::Right, Key::Enter, Key::PageUp, Key::PageDown, Key::Home];
+    // A view with a cursor of its own moves it with the arrows and opens what is under it; the wheel goes where it is.
+    let arrows = [Key::Up, Key::Down, Key::Left, Key::Right, Key::Enter, Key::PageUp, Key::PageDown, Key::Home];
+    let cursor = [&arrows[..], &[Key::WheelUp, Key::WheelDown]].concat();
     for state in moods() {
         let contexts = contexts(&state);
         let mut seen = HashSet::new();
@@ -117,6 +118,8 @@ fn every_action_of_a_key_is_bound() {
         Action::SwitchOff,
         Action::WritePaper,
         Action::Journal,
+        Action::ToggleMouse,
+        Action::Scroll(1),
         Action::WriteRecipe,
         Action::Copy,
         Action::Restore,
