@@ -181,6 +181,11 @@ fn settings_are_compared_with_pins() {
     update(&mut state, Action::Trial(Arc::new(trial)));
     assert!(state.tried.is_empty());
     compare("Compare-pins", &drawn(&state, SMALL));
+    let tables = State { view: View::Tables, size: MEDIUM, ..state.clone() };
+    compare("Tables-pins", &drawn(&tables, MEDIUM));
+    let table = eigenselect::workbench::export::table(&tables).unwrap();
+    assert_eq!(table.columns[0], "pin");
+    assert!(table.rows.iter().any(|row| row[0] == "B"));
     update(&mut state, Action::Down);
     update(&mut state, Action::Recall);
     assert_eq!(state.settings.rounds, 40);

@@ -1,4 +1,5 @@
-//! Tables 1 to 4, one below the other, or two by two where there is room.
+//! Tables 1 to 4, one below the other, or two by two where there is room; below each row
+//! the differences to the pins.
 //!
 //! ```text
 //!  Table 1: Classification error ε with the first k eigenvalues
@@ -21,7 +22,7 @@ use super::{
 use crate::{
     query::Stage,
     study::{self, Cell, Table},
-    workbench::{State, View, lists},
+    workbench::{State, View, lists, pins},
 };
 
 /// Columns between two columns of a table.
@@ -38,7 +39,10 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     };
     let across = if pane.width() >= 150 { 2 } else { 1 };
     let width = pane.width() / across;
-    let sheets: Vec<Sheet> = tables.iter().map(|(table, note)| Sheet::new(state, table, *note, width)).collect();
+    let (tables, notes): (Vec<Table>, Vec<Note>) = tables.into_iter().unzip();
+    let tables = pins::against(state, &tables);
+    let sheets: Vec<Sheet> =
+        tables.iter().zip(notes).map(|(table, note)| Sheet::new(state, table, note, width)).collect();
     // In reading order, each line of tables as high as its highest.
     let lines: Vec<(&[Sheet], u16)> = sheets
         .chunks(across as usize)
@@ -117,7 +121,8 @@ impl Sheet {
         let columns: Vec<String> = table.columns.iter().map(|head| tight(head)).collect();
         let rows: Vec<Vec<String>> =
             listed(state, table).into_iter().map(|row| row.iter().map(number::cell).collect()).collect();
-        let words = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
+        // Differences are words for their sign, below the figures that the first row has.
+        let words = |column: usize| matches!(table.rows.first().and_then(|row| row.get(column)), Some(Cell::Text(_)));
         let widths = widths(&columns, &rows, room);
         let heads: Vec<Vec<String>> =
             columns.iter().zip(&widths).map(|(head, width)| text::wrap(head, *width)).collect();

@@ -6,6 +6,10 @@ use crate::{
     study::Method,
 };
 
+pub use self::tables::{against, tables};
+
+mod tables;
+
 /// The most pins.
 pub const MOST: usize = 5;
 

@@ -263,7 +263,10 @@ fn scroll(state: &mut State, by: isize) {
 /// No view has more lines than this; a view that ends earlier stops there by itself.
 fn furthest(state: &State) -> usize {
     match state.view {
-        View::Tables => state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| t.rows.len() + 4).sum(),
+        View::Tables => {
+            let rows = |rows: usize| rows * (1 + state.pins.len()) + 4;
+            state.answer.tables.value.iter().flat_map(|t| t.iter()).map(|t| rows(t.rows.len())).sum()
+        }
         View::Pipeline => state.answer.warnings.len(),
         View::Selection => state.answer.marks.value.iter().flat_map(|m| m.iter()).map(Vec::len).max().unwrap_or(0),
         View::Overview

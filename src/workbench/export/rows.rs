@@ -85,7 +85,14 @@ fn curves(state: &State) -> Option<Table> {
 
 fn tables(state: &State) -> Table {
     let mut out = Table::new(&["table", "row", "column", "value"]);
-    for table in state.answer.tables.value.iter().flat_map(|tables| tables.iter()) {
+    // The pins have a column only where there are pins.
+    let pinned = !state.pins.is_empty();
+    if pinned {
+        out.columns.insert(0, "pin".to_owned());
+    }
+    let now = state.answer.tables.value.iter().map(|tables| (None, tables.as_ref().clone()));
+    let pins = state.pins.iter().filter_map(|pin| Some((Some(pin.letter), pins::tables(pin)?)));
+    for (pin, table) in now.chain(pins).flat_map(|(pin, tables)| tables.into_iter().map(move |table| (pin, table))) {
         for row in &table.rows {
             let name = row.iter().find_map(|cell| if let Cell::Text(text) = cell { Some(text.as_str()) } else { None });
             for (column, cell) in table.columns.iter().zip(row) {
@@ -95,7 +102,9 @@ fn tables(state: &State) -> Table {
                     Cell::Missing => Value::Null,
                     Cell::Text(_) => continue,
                 };
-                out.rows.push(vec![json!(table.number), json!(name), json!(column), value]);
+                let pin = pinned.then(|| json!(pin.map(String::from)));
+                let rest = [json!(table.number), json!(name), json!(column), value];
+                out.rows.push(pin.into_iter().chain(rest).collect());
             }
         }
     }
