@@ -15,7 +15,7 @@
 //! ```
 
 pub use png::FigureError;
-pub use portrait::{Bar, Portrait};
+pub use portrait::{Bar, Portrait, pixels_png};
 
 mod axis;
 pub(crate) mod base64;

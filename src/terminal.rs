@@ -13,14 +13,19 @@
 use std::io;
 
 pub use self::{
-    caps::look,
+    caps::{look, pictures},
     ending::{Ending, Exit},
 };
 use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
     query::Settings,
     ui::{self, Look},
-    workbench::{Command, Mouse, State, Update, recipe::Loaded, shape::Style, worker::Worker},
+    workbench::{
+        Command, Mouse, State, Update,
+        recipe::Loaded,
+        shape::{self, Style},
+        worker::Worker,
+    },
 };
 
 mod canvas;
@@ -30,6 +35,7 @@ mod events;
 mod guard;
 mod input;
 mod keys;
+mod kitty;
 mod screen;
 mod session;
 
@@ -92,6 +98,8 @@ pub struct Opening {
     pub look: Look,
     /// The mouse is listened to from the beginning.
     pub mouse: bool,
+    /// Shapes are shown as pictures; [`pictures`] finds out whether they can be.
+    pub pictures: bool,
     /// The recipe to begin with; its parameters are `settings` already.
     pub recipe: Option<Loaded>,
     /// The last session of the data set, which is offered.
@@ -126,7 +134,9 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
         state.mouse = Mouse::Screen;
     }
     if opening.look.ascii {
-        state.style = Style::Plain;
+        (state.style, state.styles) = (Style::Plain, shape::PLAIN);
+    } else if opening.pictures {
+        (state.style, state.styles) = (Style::Pixels, shape::PICTURES);
     }
     let outcome = session::run(state, &engine, &mut screen, &inbox);
     // What is typed from now on belongs to the shell, which the user sees before the engine puts its things in order.

@@ -140,6 +140,32 @@ fn the_mouse_is_the_terminals_until_it_is_asked_for_and_after_every_end() {
 }
 
 #[test]
+fn a_terminal_that_shows_pictures_gets_one_and_others_get_none() {
+    for (program, pictured) in [("WezTerm", true), ("other", false)] {
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_tui"));
+        let cache = folder("pictures");
+        command.args([small(), "--cache", cache.to_str().unwrap(), "--set", "kmax=20"]);
+        command.env("TERM_PROGRAM", program);
+        command.env_remove("TMUX");
+        command.env_remove("STY");
+        let mut seat = Seat::at(command, 80, 24);
+        seat.until_shown("up to date");
+        let before = seat.bytes();
+        seat.press("9");
+        seat.until_shown(if pictured { "pixels ×1.0" } else { "dots ×1.0" });
+        if pictured {
+            seat.until("a picture", |_| seat.bytes() > before + 8000);
+        }
+        seat.until_settled();
+        let blank = seat.look(|screen| screen.contents().lines().skip(5).take(16).all(|line| line.trim().is_empty()));
+        assert_eq!(blank, pictured, "characters or a picture, and not both");
+        seat.press("q");
+        assert_eq!(seat.end().exit_code(), 0);
+        seat.assert_restored();
+    }
+}
+
+#[test]
 fn what_the_engine_does_is_logged() {
     let file = folder("log").join("tui.log");
     let cache = folder("logged").to_str().unwrap().to_owned();
@@ -446,6 +472,7 @@ fn faulty_program() {
         settings: Settings::default(),
         look: Look::default(),
         mouse: false,
+        pictures: false,
         recipe: None,
         last: None,
     };

@@ -12,6 +12,7 @@
 //! colours = "many"          # auto, none, few (16), many (256), all
 //! ascii = false
 //! mouse = false
+//! graphics = "auto"         # auto, kitty, none: pictures of shapes
 //! log = "/tmp/tui.log"
 //!
 //! [cache]
@@ -69,6 +70,8 @@ pub(super) struct Screen {
     ascii: Option<bool>,
     /// The mouse is listened to from the beginning.
     pub(super) mouse: bool,
+    /// Pictures instead of characters.
+    pub(super) graphics: Graphics,
     /// What the engine does is written there.
     pub(super) log: Option<PathBuf>,
 }
@@ -91,6 +94,30 @@ enum Colours {
     Few,
     Many,
     All,
+}
+
+/// Whether shapes are shown as pictures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Graphics {
+    /// Where the terminal is known to take them.
+    #[default]
+    Auto,
+    /// Always, by kitty's protocol.
+    Kitty,
+    /// Never.
+    None,
+}
+
+impl Graphics {
+    /// Whether they are, `known` saying what the terminal takes.
+    pub(super) fn shown(self, known: impl FnOnce() -> bool) -> bool {
+        match self {
+            Self::Auto => known(),
+            Self::Kitty => true,
+            Self::None => false,
+        }
+    }
 }
 
 /// Where spectra are kept.
@@ -230,7 +257,7 @@ mod tests {
     #[test]
     fn everything_that_the_file_can_say() {
         let text = "threads = 3\n[set]\nkmax = 200\nnormalisation = \"log\"\n[screen]\nground = \"light\"\n\
-                    colours = \"many\"\nascii = true\nmouse = true\nlog = \"l\"\n[cache]\n\
+                    colours = \"many\"\nascii = true\nmouse = true\ngraphics = \"none\"\nlog = \"l\"\n[cache]\n\
                     dir = \"/c\"\nlimit = \"4G\"\n";
         let config = read(text).unwrap();
         assert_eq!((config.threads, config.cache.most, config.screen.mouse), (Some(3), Some(4 << 30), true));

@@ -97,6 +97,8 @@ fn screen(report: &mut Report) {
         (true, Shades::All) => "the terminal's sixteen, all for shapes",
     };
     report.good("colours", colours);
+    let pictures = if terminal::pictures() { "kitty's protocol" } else { "none: shapes are made of characters" };
+    report.good("pictures", pictures);
     if look.ascii {
         report.mind("characters", "ASCII alone: the locale (LC_ALL, LC_CTYPE, LANG) is not UTF-8");
     } else {

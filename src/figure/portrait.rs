@@ -110,6 +110,15 @@ impl Portrait {
     }
 }
 
+/// A PNG of red, green, blue and alpha of each pixel, row after row; alpha is 0 or 255.
+///
+/// # Errors
+/// [`FigureError`], when there are not four bytes for each pixel, or none.
+pub fn pixels_png(width: u32, height: u32, pixels: Vec<u8>) -> Result<Vec<u8>, FigureError> {
+    let size = IntSize::from_wh(width, height).ok_or(FigureError::Size { width, height })?;
+    pack(&Pixmap::from_vec(pixels, size).ok_or(FigureError::Size { width, height })?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

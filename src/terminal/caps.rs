@@ -38,6 +38,23 @@ fn from(variable: impl Fn(&str) -> Option<OsString>) -> Look {
     }
 }
 
+/// True where the terminal says that it shows pictures by kitty's protocol, and nothing stands between it and us that
+/// would swallow them.
+#[must_use]
+pub fn pictures() -> bool {
+    pictured(|name| env::var_os(name))
+}
+
+fn pictured(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    let lower =
+        |name: &str| variable(name).map(|value| value.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let term = lower("TERM");
+    let between = !lower("TMUX").is_empty() || !lower("STY").is_empty();
+    let known = matches!(term.as_str(), "xterm-kitty" | "xterm-ghostty")
+        || matches!(lower("TERM_PROGRAM").as_str(), "wezterm" | "ghostty");
+    known && !between && !term.starts_with("tmux") && !term.starts_with("screen")
+}
+
 /// Fails where no screen can be drawn.
 pub(super) fn require() -> Result<(), TerminalError> {
     if !io::stdout().is_terminal() || !io::stdin().is_terminal() {
@@ -76,6 +93,17 @@ mod tests {
         assert_eq!(with(&[("TERM", "xterm-256color"), ("COLORTERM", "truecolor")]).shades, Shades::All);
         assert!(with(&[("COLORFGBG", "0;default;15")]).light);
         assert!(!with(&[("COLORFGBG", "15;0")]).light && !with(&[("COLORFGBG", "x")]).light && !with(&[]).light);
+    }
+
+    #[test]
+    fn pictures_go_to_terminals_that_are_known_to_take_them() {
+        let with = |variables: &[(&str, &str)]| {
+            pictured(|name| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| OsString::from(value)))
+        };
+        assert!(with(&[("TERM", "xterm-kitty")]) && with(&[("TERM", "xterm-256color"), ("TERM_PROGRAM", "WezTerm")]));
+        assert!(!with(&[("TERM", "xterm-256color")]) && !with(&[]));
+        assert!(!with(&[("TERM", "tmux-256color"), ("TERM_PROGRAM", "WezTerm")]), "tmux stands between");
+        assert!(!with(&[("TERM", "xterm-kitty"), ("TMUX", "/tmp/tmux-0/default,1,0")]));
     }
 
     #[test]

@@ -17,7 +17,10 @@ use ratatui::crossterm::{
     terminal::{self, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen},
 };
 
-use super::events::{Event, Queue};
+use super::{
+    events::{Event, Queue},
+    kitty,
+};
 
 /// True while the terminal is ours.
 static OURS: AtomicBool = AtomicBool::new(false);
@@ -25,6 +28,8 @@ static OURS: AtomicBool = AtomicBool::new(false);
 /// So many panics of other threads are remembered.
 const PANICS: usize = 20;
 
+/// True while the terminal shows a picture.
+static PICTURE: AtomicBool = AtomicBool::new(false);
 /// True while the mouse is listened to; remembered while the terminal is the shell's.
 static MOUSE: AtomicBool = AtomicBool::new(false);
 /// Presses and the wheel, with their places in the SGR encoding (xterm's control sequences, "Mouse Tracking").
@@ -97,6 +102,11 @@ pub(super) fn take() -> io::Result<()> {
     taken
 }
 
+/// Whether the terminal shows a picture, which is to be taken away at the end.
+pub(super) fn pictured(shown: bool) {
+    PICTURE.store(shown, Ordering::SeqCst);
+}
+
 fn say(bytes: &[u8]) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(bytes)?;
@@ -117,6 +127,9 @@ pub(super) fn restore() {
     if OURS.swap(false, Ordering::SeqCst) {
         if MOUSE.load(Ordering::SeqCst) {
             let _ = say(IGNORE);
+        }
+        if PICTURE.swap(false, Ordering::SeqCst) {
+            let _ = say(kitty::REMOVE);
         }
         let _ = execute!(
             io::stdout(),

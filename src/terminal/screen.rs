@@ -1,6 +1,9 @@
 //! What is drawn on: a frame becomes one write.
 
-use std::io::{self, Write as _};
+use std::{
+    io::{self, Write as _},
+    sync::Arc,
+};
 
 use ratatui::crossterm::terminal;
 use ratatui::{
@@ -12,12 +15,19 @@ use rustix::process::{Signal, kill_current_process_group};
 use super::{
     canvas::{Canvas, Pending},
     guard::{self, Guard},
+    kitty,
 };
 use crate::{
     figure::base64,
     ui::{self, Look},
-    workbench::{Action, State},
+    workbench::{
+        Action, State, View,
+        shape::{self, Style},
+    },
 };
+
+/// A picture, packed.
+type Png = Arc<Vec<u8>>;
 
 /// A surface that the session draws on.
 pub(super) trait Surface {
@@ -45,6 +55,8 @@ pub(super) struct Screen {
     terminal: Terminal<Canvas>,
     pending: Pending,
     look: Look,
+    /// The picture that the terminal shows.
+    shown: Option<Png>,
 }
 
 /// Synchronized update, begun and ended: a terminal that knows it shows all of the frame or none.
@@ -57,12 +69,42 @@ impl Screen {
         let pending = Pending::default();
         let measure = || terminal::size().map(Size::from);
         let terminal = Terminal::new(Canvas::new(Pending::clone(&pending), Box::new(measure))?)?;
-        Ok(Self { guard, terminal, pending, look })
+        Ok(Self { guard, terminal, pending, look, shown: None })
     }
 
     /// Gives the terminal back; returns what other threads panicked with.
     pub(super) fn leave(self) -> Vec<String> {
         self.guard.leave()
+    }
+}
+
+/// The picture that the state asks for, and its cells.
+fn wanted(state: &State) -> Option<(Png, (u16, u16))> {
+    let open = state.help.is_some() || state.palette.is_some() || state.told.is_some();
+    if state.view != View::Shape || open {
+        return None;
+    }
+    let (scene, picture) = state.pictures.whole(state.model()?)?;
+    // One that was painted for another size would cover what is around it.
+    let fits = scene.style == Style::Pixels && state.style == Style::Pixels && scene.cells == shape::cells(state.size);
+    picture.png.clone().filter(|_| fits).map(|png| (png, scene.cells))
+}
+
+impl Screen {
+    /// What makes the terminal show the picture that is asked for, or none; nothing where it does already.
+    fn picture(&mut self, state: &State) -> Vec<u8> {
+        let wanted = wanted(state);
+        let same = match (&wanted, &self.shown) {
+            (Some((png, _)), Some(shown)) => Arc::ptr_eq(png, shown),
+            (None, None) => true,
+            _ => false,
+        };
+        if same {
+            return Vec::new();
+        }
+        self.shown = wanted.as_ref().map(|(png, _)| Arc::clone(png));
+        guard::pictured(self.shown.is_some());
+        wanted.map_or_else(|| kitty::REMOVE.to_vec(), |(png, cells)| kitty::put(&png, shape::corner(state.size), cells))
     }
 }
 
@@ -74,7 +116,8 @@ impl Surface for Screen {
     fn draw(&mut self, state: &State) -> io::Result<()> {
         let look = self.look;
         self.terminal.draw(|frame| ui::render(state, look, frame))?;
-        let frame = std::mem::take(&mut *self.pending.borrow_mut());
+        let mut frame = std::mem::take(&mut *self.pending.borrow_mut());
+        frame.extend(self.picture(state));
         if !frame.is_empty() {
             let whole = [BEGIN, &frame, END].concat();
             let mut out = io::stdout().lock();
@@ -85,6 +128,7 @@ impl Surface for Screen {
     }
 
     fn forget(&mut self) -> io::Result<()> {
+        self.shown = None;
         // Not `clear`, which asks the terminal for its cursor and waits for an answer that the reader of keys takes
         // away.
         let size = self.terminal.size()?;

@@ -83,6 +83,7 @@ fn title(state: &State, model: usize, pane: &mut Pane<'_>) {
         Style::Dots => "dots",
         Style::Blocks => "blocks",
         Style::Plain => "plain",
+        Style::Pixels => "pixels",
     };
     let end = pane.width().saturating_sub(1);
     let function = state.function.map(|index| {
@@ -154,6 +155,8 @@ pub(super) fn cells(scene: &Scene, picture: &Picture, pane: &mut Pane<'_>) {
                 Style::Dots => ink.dots((column, row), pixel),
                 Style::Blocks => ink.blocks(pixel(0, 0), pixel(0, 1)),
                 Style::Plain => pixel(0, 0).map(|seen| ink.plain(seen)),
+                // The terminal lays the picture over empty cells.
+                Style::Pixels => None,
             };
             if let Some((character, face)) = cell {
                 pane.dot(column as u16, row as u16, character, face);

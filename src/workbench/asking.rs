@@ -126,7 +126,10 @@ pub fn scenes(state: &State) -> Vec<Scene> {
             }
         });
         let function = found.filter(|_| cells != shape::THUMB);
-        Some(Scene { model, mesh: mesh(model)?, function, camera, cells, style: state.style })
+        // Small pictures are many, and characters do for them.
+        let small = cells == shape::THUMB && state.style == shape::Style::Pixels;
+        let style = if small { shape::Style::Dots } else { state.style };
+        Some(Scene { model, mesh: mesh(model)?, function, camera, cells, style })
     };
     match state.view {
         View::Shape => {

@@ -41,7 +41,7 @@ pub(super) fn look(state: &mut State, action: &Action) {
         Action::Find => lists::begin_to_find(state),
         Action::LookAt(model) => look_at(state, *model),
         Action::Pin | Action::Unpin | Action::Sweep | Action::ToggleSweep => compare(state, action),
-        Action::ToggleStyle => state.style = state.style.turned(),
+        Action::ToggleStyle => state.style = state.style.turned(state.styles),
         Action::ToggleAlone => state.alone = !state.alone,
         Action::ShowShape => {
             remember(state);

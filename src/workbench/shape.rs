@@ -30,6 +30,12 @@ pub const fn cells((columns, rows): (u16, u16)) -> (u16, u16) {
     (columns, rows.saturating_sub(if rows >= TALL { 6 } else { 3 }))
 }
 
+/// Column and row of the upper left corner of the picture of a shape on a screen of this size.
+#[must_use]
+pub const fn corner((_, rows): (u16, u16)) -> (u16, u16) {
+    (0, if rows >= TALL { 4 } else { 2 })
+}
+
 /// How many small pictures stand side by side on a screen of this size.
 #[must_use]
 pub const fn thumbs((columns, rows): (u16, u16)) -> usize {
@@ -95,7 +101,16 @@ pub enum Style {
     Blocks,
     /// A character as dark as its cell.
     Plain,
+    /// Pixels, for terminals that show pictures.
+    Pixels,
 }
+
+/// The styles of a screen with ASCII alone.
+pub const PLAIN: &[Style] = &[Style::Plain];
+/// Those of a screen with more than ASCII.
+pub const CHARACTERS: &[Style] = &[Style::Dots, Style::Blocks];
+/// Those of a screen that shows pictures.
+pub const PICTURES: &[Style] = &[Style::Pixels, Style::Dots, Style::Blocks];
 
 impl Style {
     /// Pixels of a cell, across and down.
@@ -105,6 +120,8 @@ impl Style {
             Self::Dots => (2, 4),
             Self::Blocks => (1, 2),
             Self::Plain => (1, 1),
+            // The size of a common cell: the terminal fits the picture to its own.
+            Self::Pixels => (8, 16),
         }
     }
 
@@ -112,19 +129,16 @@ impl Style {
     #[must_use]
     pub const fn aspect(self) -> f32 {
         match self {
-            Self::Dots | Self::Blocks => 1.0,
+            Self::Dots | Self::Blocks | Self::Pixels => 1.0,
             Self::Plain => 2.0,
         }
     }
 
-    /// The other style of a screen with more than ASCII.
+    /// The style after this one among those that there are, going round.
     #[must_use]
-    pub const fn turned(self) -> Self {
-        match self {
-            Self::Dots => Self::Blocks,
-            Self::Blocks => Self::Dots,
-            Self::Plain => Self::Plain,
-        }
+    pub fn turned(self, styles: &[Self]) -> Self {
+        let at = styles.iter().position(|style| *style == self).map_or(0, |at| at + 1);
+        styles.get(at % styles.len().max(1)).copied().unwrap_or(self)
     }
 }
 

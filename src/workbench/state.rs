@@ -9,7 +9,7 @@ use super::{
     lists::Order,
     parameters,
     recipe::Loaded,
-    shape::{Camera, Pictures, Scene, Style},
+    shape::{self, Camera, Pictures, Scene, Style},
 };
 use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
 
@@ -244,6 +244,8 @@ pub struct State {
     pub camera: Camera,
     /// How shapes become characters.
     pub style: Style,
+    /// The styles that the screen has.
+    pub styles: &'static [Style],
     /// What was wanted painted.
     pub scenes: Vec<Scene>,
     /// What was painted.
@@ -304,6 +306,7 @@ impl State {
             tried: Vec::new(),
             camera: Camera::default(),
             style: Style::default(),
+            styles: shape::CHARACTERS,
             scenes: Vec::new(),
             pictures: Pictures::default(),
             alone: false,

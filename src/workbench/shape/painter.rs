@@ -5,7 +5,7 @@ use std::{
     thread,
 };
 
-use super::{Picture, Scene, Solid};
+use super::{Picture, Scene, Solid, Style, portrait};
 use crate::mesh::Mesh;
 
 /// Surfaces that are kept ready: as many as a list shows small pictures of, and some more.
@@ -57,7 +57,10 @@ fn work(inbox: &mpsc::Receiver<Vec<Scene>>, tell: &dyn Fn(Scene, Arc<Picture>)) 
             ready.len() - 1
         });
         let values = scene.function.as_ref().map(|function| function.values.as_slice());
-        let picture = Picture::paint(&ready[at].1, scene.camera, scene.pixels(), scene.style.aspect(), values);
+        let mut picture = Picture::paint(&ready[at].1, scene.camera, scene.pixels(), scene.style.aspect(), values);
+        if scene.style == Style::Pixels {
+            picture.png = portrait::clear_png(&picture, values.is_some()).map(Arc::new);
+        }
         tell(scene, Arc::new(picture));
     }
 }
@@ -67,7 +70,6 @@ mod tests {
     use std::time::Duration;
 
     use super::{super::Camera, *};
-    use crate::workbench::shape::Style;
 
     fn scene(model: usize, yaw: i32) -> Scene {
         let mesh = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]);

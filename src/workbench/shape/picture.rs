@@ -1,5 +1,7 @@
 //! A z-buffer: the nearest surface at each pixel, its shade, and the value of a function on it.
 
+use std::sync::Arc;
+
 use super::{
     Camera, Solid,
     solid::{dot, sub},
@@ -29,6 +31,8 @@ pub struct Picture {
     pub shades: Vec<f32>,
     /// The function's value, from −1 to 1; 0 without one.
     pub values: Vec<f32>,
+    /// The picture as a PNG with a clear ground, for [`Style::Pixels`](super::Style::Pixels) alone.
+    pub png: Option<Arc<Vec<u8>>>,
 }
 
 impl Picture {
@@ -42,7 +46,8 @@ impl Picture {
         aspect: f32,
         values: Option<&[f64]>,
     ) -> Self {
-        let mut picture = Self { width, height, shades: vec![-1.0; width * height], values: vec![0.0; width * height] };
+        let mut picture =
+            Self { width, height, shades: vec![-1.0; width * height], values: vec![0.0; width * height], png: None };
         let mut depths = vec![f32::NEG_INFINITY; width * height];
         let axes = camera.axes();
         let half = (width as f32).min(height as f32 * aspect) / 2.0 * FILL * camera.scale();

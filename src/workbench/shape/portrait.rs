@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Picture, Scene, Solid};
-use crate::figure::{Bar, Portrait};
+use crate::figure::{self, Bar, Portrait};
 
 /// Pixels of the side; each is the mean of [`FINE`] × [`FINE`] painted ones.
 const SIDE: usize = 1440;
@@ -44,6 +44,20 @@ impl Scene {
         let (width, height) = (columns.len() as u32, rows.len() as u32);
         Portrait { title: title.to_owned(), caption: caption.to_owned(), width, height, pixels, bar }
     }
+}
+
+/// The picture as a PNG whose ground is clear; none where it has no pixels.
+pub(super) fn clear_png(picture: &Picture, coloured: bool) -> Option<Vec<u8>> {
+    let mut pixels = Vec::with_capacity(4 * picture.width * picture.height);
+    for (row, column) in (0..picture.height).flat_map(|row| (0..picture.width).map(move |column| (row, column))) {
+        if picture.at(column, row).is_some() {
+            let seen = seen(picture, column, row, coloured).map(|part| part.round().clamp(0.0, 255.0) as u8);
+            pixels.extend([seen[0], seen[1], seen[2], 255]);
+        } else {
+            pixels.extend([0; 4]);
+        }
+    }
+    figure::pixels_png(picture.width as u32, picture.height as u32, pixels).ok()
 }
 
 /// Rows and columns of the print that hold something, with a margin; at least a third of the side each way.
