@@ -102,7 +102,8 @@ impl Desk<'_> {
         let of = Parameter::ALL.into_iter().filter(differs);
         let said: Vec<String> =
             of.map(|parameter| format!("{} = {}", parameter.name(), trial.settings.get(parameter))).collect();
-        self.note(Weight::Note, &format!("tried {}", said.join(", ")));
+        let said = if said.is_empty() { "the parameters of the screen".to_owned() } else { said.join(", ") };
+        self.note(Weight::Note, &format!("tried {said}"));
         (self.notify)(Update::Trial(Arc::new(trial)));
     }
 
