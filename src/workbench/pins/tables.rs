@@ -40,8 +40,8 @@ fn number(cell: &Cell) -> Option<(f64, usize)> {
     }
 }
 
-/// The tables with a row more for each row and pin: the present figure less the pin's, and, where a table has decisions,
-/// two columns with the p of the paired test ([`study::mcnemar`]) on D and on Q.
+/// The tables with a row more for each row and pin: the present figure less the pin's, and, where a table has
+/// decisions, two columns with the p of the paired test ([`study::mcnemar`]) on D and on Q.
 #[must_use]
 pub fn against(state: &State, tables: &[Table]) -> Vec<Table> {
     let pinned: Vec<(&Pin, Vec<Table>)> = state.pins.iter().filter_map(|pin| Some((pin, self::tables(pin)?))).collect();
