@@ -30,6 +30,7 @@ mod aside;
 mod costs;
 mod db;
 mod examined;
+mod heap;
 mod host;
 mod inquiry;
 mod library;

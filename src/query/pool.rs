@@ -9,7 +9,7 @@ use std::{
     path::PathBuf,
     sync::{
         Arc, Condvar, Mutex, MutexGuard, PoisonError,
-        atomic::{AtomicBool, Ordering},
+        atomic::{AtomicBool, AtomicUsize, Ordering},
     },
     thread::JoinHandle,
     time::{Duration, Instant},
@@ -18,6 +18,7 @@ use std::{
 use super::{
     Problem, Stage,
     aside::aside,
+    heap,
     library::{Facts, Failure, FileAt, Found, Library, Missing},
     stamp::Stamp,
 };
@@ -79,9 +80,14 @@ struct Wanted {
 struct Shared {
     wanted: Mutex<Wanted>,
     changed: Condvar,
+    /// Jobs that have ended since free memory was given back.
+    ended: AtomicUsize,
     library: Library,
     listener: Listener,
 }
+
+/// Jobs after which free memory is given back: often enough to keep it small beside what is in use.
+const BATCH: usize = 8;
 
 impl Shared {
     fn wanted(&self) -> MutexGuard<'_, Wanted> {
@@ -102,7 +108,13 @@ impl Pool {
         let threads = threads.max(1);
         let mut wanted = Wanted::default();
         wanted.running.resize_with(threads, || None);
-        let shared = Arc::new(Shared { wanted: Mutex::new(wanted), changed: Condvar::new(), library, listener });
+        let shared = Arc::new(Shared {
+            wanted: Mutex::new(wanted),
+            changed: Condvar::new(),
+            ended: AtomicUsize::new(0),
+            library,
+            listener,
+        });
         let threads = (0..threads)
             .filter_map(|thread| {
                 let shared = Arc::clone(&shared);
@@ -190,6 +202,12 @@ fn work(shared: &Shared, thread: usize) {
                     wanted = shared.wanted();
                     continue;
                 }
+                if shared.ended.swap(0, Ordering::Relaxed) > 0 {
+                    drop(wanted);
+                    heap::give_back();
+                    wanted = shared.wanted();
+                    continue;
+                }
                 wanted = shared.changed.wait(wanted).unwrap_or_else(PoisonError::into_inner);
             }
         };
@@ -211,6 +229,11 @@ fn work(shared: &Shared, thread: usize) {
         let mut wanted = shared.wanted();
         if let (Some(running), Some(found)) = (wanted.running[thread].take(), found) {
             (shared.listener)(News { list: running.list, slot: running.slot, what: What::Done { facts, found } });
+        }
+        drop(wanted);
+        if shared.ended.fetch_add(1, Ordering::Relaxed) + 1 == BATCH {
+            shared.ended.store(0, Ordering::Relaxed);
+            heap::give_back();
         }
     }
 }
