@@ -111,7 +111,7 @@ impl Sides {
         let Some(first) = ritz.first() else { return Self::default() };
         let side = |right: bool| {
             let list: Vec<Ritz> = ritz.iter().copied().filter(|ritz| (ritz.theta > 0.0) == right).collect();
-            converged(&list, scales, 16.0 * f64::EPSILON * first.theta.abs() + scales.leak)
+            converged(&list, scales, 16.0 * f64::EPSILON * first.theta.abs())
         };
         Self { left: side(false), right: side(true), nearest: 1.0 / first.theta.abs() }
     }
@@ -144,7 +144,7 @@ fn converged(list: &[Ritz], scales: Scales, floor: f64) -> Side {
         }
         squares += square;
         side.found.extend(list[at..end].iter().map(|ritz| {
-            let rounding = floor / (ritz.theta * ritz.theta)
+            let rounding = (floor + scales.leak) / (ritz.theta * ritz.theta)
                 + SAFETY * scales.accuracy
                 + ROUNDING * ritz.value.abs().max(scales.sigma);
             let origin = Origin { sigma: scales.sigma, square, group: 1.0 / list[at].theta.abs(), rounding };
