@@ -26,6 +26,10 @@ const BLOCKS: usize = 36;
 /// Blocks after which it looks at its Ritz values for the first time; as many as most processes need but one.
 const FIRST_LOOK: usize = 18;
 
+/// Up to this many rows a basis is kept in double precision. It may come to hold a good part of the space, and what is
+/// left of that is then so little that single precision does not know it from rounding.
+const SMALL: usize = 4 * BLOCKS * WIDTH;
+
 /// Everything that the parts share while one of them works.
 #[derive(Debug, Default)]
 pub(super) struct Tools {
@@ -314,7 +318,8 @@ impl Piece {
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch, .. } = tools;
         poll.meter.timings.processes += 1;
-        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, Purpose::Values, scratch, poll)?;
+        let purpose = if self.pencil.order() < SMALL { Purpose::Vectors(&[]) } else { Purpose::Values };
+        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, purpose, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
         let spacing = (left + right.unwrap_or(left)) / TARGET;
