@@ -1,9 +1,12 @@
 //! Questions that a researcher has, answered by keys alone on the starter set.
 
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     process::{Command, Stdio},
-    sync::OnceLock,
+    sync::{
+        OnceLock,
+        atomic::{AtomicUsize, Ordering},
+    },
 };
 
 use super::{
@@ -11,17 +14,25 @@ use super::{
     seat::{Seat, folder},
 };
 
-/// The starter set and a cache with its first spectra: few eigenvalues, which take no time.
-fn starter() -> &'static [String] {
-    static ARGUMENTS: OnceLock<Vec<String>> = OnceLock::new();
-    ARGUMENTS.get_or_init(|| {
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
-        let cache = folder("starter");
+/// The starter set and a cache with its first spectra: few eigenvalues, which take no time. Each screen has a cache of
+/// its own, for it keeps its last session there, which it offers to the next one.
+fn starter() -> Vec<String> {
+    static FILLED: OnceLock<PathBuf> = OnceLock::new();
+    static SCREENS: AtomicUsize = AtomicUsize::new(0);
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    let words = |cache: &Path| {
         let words = [data.to_str().unwrap(), "--cache", cache.to_str().unwrap(), "--set", "kmax=20", "--set", "k=4"];
-        let report = Command::new(env!("CARGO_BIN_EXE_tui")).arg("report").args(words).stdout(Stdio::null()).status();
-        assert!(report.unwrap().success());
         words.map(str::to_owned).to_vec()
-    })
+    };
+    let filled = FILLED.get_or_init(|| {
+        let cache = folder("starter");
+        let mut report = Command::new(env!("CARGO_BIN_EXE_tui"));
+        assert!(report.arg("report").args(words(&cache)).stdout(Stdio::null()).status().unwrap().success());
+        cache
+    });
+    let own = folder(&format!("starter-{}", SCREENS.fetch_add(1, Ordering::Relaxed)));
+    assert!(Command::new("cp").arg("-r").arg(filled.join(".")).arg(&own).status().unwrap().success());
+    words(&own)
 }
 
 /// In front of the starter set, on a screen of the larger usual size.
