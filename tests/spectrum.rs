@@ -48,11 +48,12 @@ fn ten_meshes_agree_with_scipy_in_every_eigenvalue() {
         }
         println!("{name}: {worst:.1e}");
         assert!(worst < 1e-9, "mesh {name}: {worst:e}");
-        // The bounds are small too, but for where a shift is so near to an eigenvalue that what single precision leaves
-        // out of the orthogonality of a basis counts much: there they say more than is seen.
-        let widest =
-            spectrum.residuals()[1..500].iter().zip(&found[1..500]).fold(0.0_f64, |most, (e, v)| most.max(e / v));
-        println!("{name}: bounds up to {widest:.1e}");
-        assert!(widest < 1e-8, "mesh {name}: {widest:e}");
+        // The bounds are small, too. They are widest at λ_2 where that is far from the first shift in proportion to
+        // itself, as of the elongated 101 with 0.006 of it: there they say 3000 times more than is seen.
+        let shares: Vec<f64> =
+            spectrum.residuals()[1..500].iter().zip(&found[1..500]).map(|(error, value)| error / value).collect();
+        let widest = shares[1..].iter().fold(0.0_f64, |most, share| most.max(*share));
+        println!("{name}: bounds up to {:.1e} and {widest:.1e}", shares[0]);
+        assert!(shares[0] < 1e-8 && widest < 1e-9, "mesh {name}: {:e}, {widest:e}", shares[0]);
     }
 }

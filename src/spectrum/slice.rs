@@ -18,10 +18,10 @@
 //!    is to the rest of the projected operator, so that 1 is applied to it first). This is [`Found::error`].
 //!
 //! Rounding is added to both: that of the dense eigenproblem, 16 ε times the largest θ, what the basis's single
-//! precision [leaves out](super::krylov::Krylov::leak), and that of the factorisation
-//! and the solves. These solve a neighbouring problem, (L − σB + E) x = Bx. E shifts an eigenvalue by xᵀEx, which
-//! is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [eightfold](SAFETY). It
-//! is the one part of the bound that is an estimate.
+//! precision [leaves out](super::krylov::Krylov::leak), and that of the factorisation and the solves. These solve a
+//! neighbouring problem, (L − σB + E) x = Bx. E shifts an eigenvalue by xᵀEx, which is
+//! [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [eightfold](SAFETY). The
+//! last two are the parts of the bound that are estimates.
 
 use super::krylov::Ritz;
 
