@@ -447,7 +447,7 @@ fn ctrl_c_stops_soon_with_130_and_keeps_what_is_finished() {
     assert!(outcome.out.is_empty());
     // The promise is 50–100 ms, for each of the two threads.
     assert!(took < Duration::from_millis(600), "{took:?} of the processor after the interrupt");
-    assert!(asked.elapsed() < Duration::from_secs(30), "and it does end");
+    assert!(asked.elapsed() < Duration::from_secs(5), "and it does end");
     assert!(!room.entries().is_empty());
 }
 

@@ -20,7 +20,7 @@ use super::{
     study,
 };
 use crate::{
-    query::{Problem, Single, SingleError, Singles},
+    query::{Problem, Single, SingleError, Singles, Source},
     report::spectrum::{Failed, MeshSpectrum, Spectra, ev},
     store,
     watch::{Silent, Watch},
@@ -53,6 +53,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
         let file = path.display().to_string();
         match solved {
             Ok(Single { geometry, survey, spectrum, source, seconds }) => {
+                let processes = if source == Source::Ran { spectrum.timings.processes } else { 0 };
                 let spectrum = MeshSpectrum::new(file, geometry, &survey, problem.choice, &spectrum, arguments.count);
                 if spectrum.eigenvalues.len() < arguments.count {
                     complain(&format!(
@@ -60,7 +61,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
                         spectrum.file, spectrum.order, arguments.count
                     ));
                 }
-                spectra.push(spectrum, source, seconds);
+                spectra.push(spectrum, source, seconds, processes);
             }
             Err(SingleError::Failed(reason)) => {
                 complain(&format!("{file}: {reason}"));

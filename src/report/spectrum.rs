@@ -206,6 +206,8 @@ pub struct SpectraRun {
     pub spectra: StoreCounts,
     /// How long each solve took, in the order of `spectra`; 0 when none ran.
     pub seconds: Vec<f64>,
+    /// How many Lanczos processes each solve ran: fewer where an earlier one had left bands, 0 when none ran.
+    pub processes: Vec<usize>,
 }
 
 impl Spectra {
@@ -221,10 +223,11 @@ impl Spectra {
         }
     }
 
-    /// Adds a spectrum that came from `source` within `seconds`.
-    pub fn push(&mut self, spectrum: MeshSpectrum, source: Source, seconds: f64) {
+    /// Adds a spectrum that came from `source` within `seconds`, by so many Lanczos processes.
+    pub fn push(&mut self, spectrum: MeshSpectrum, source: Source, seconds: f64, processes: usize) {
         self.run.spectra.add(source);
         self.run.seconds.push(seconds);
+        self.run.processes.push(processes);
         self.spectra.push(spectrum);
     }
 
@@ -371,9 +374,9 @@ mod tests {
     fn spectra() -> Spectra {
         let mut spectra = Spectra::new();
         spectra.program.version = "1.2.3";
-        spectra.push(example(), Source::Ran, 0.25);
+        spectra.push(example(), Source::Ran, 0.25, 2);
         let cot = MeshSpectrum { operator: Operator::Cot, mass: None, boundary_edges: 3, genus: None, ..example() };
-        spectra.push(MeshSpectrum { file: "b.obj".to_owned(), measure: 500.0, ..cot }, Source::Disk, 0.0);
+        spectra.push(MeshSpectrum { file: "b.obj".to_owned(), measure: 500.0, ..cot }, Source::Disk, 0.0, 0);
         spectra.failed.push(Failed { file: "x.off".to_owned(), reason: "there are no faces".to_owned() });
         spectra
     }

@@ -39,7 +39,7 @@ def same(what, ours, theirs):
 
 def near(what, ours, theirs):
     ours, theirs = np.asarray(ours), np.asarray(theirs)
-    if ours.shape != theirs.shape or (np.abs(ours - theirs) > TOLERANCE).any():
+    if ours.shape != theirs.shape or not (np.abs(ours - theirs) <= TOLERANCE).all():
         sys.exit(f"{what}: the program says {ours}, the definition {theirs}")
 
 
