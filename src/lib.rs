@@ -4,7 +4,7 @@
 //! imports only floors below it (`tests/tidy.rs` checks that):
 //!
 //! ```text
-//! files ─► content hash ─► mesh ─► L, B ─► spectrum ─► features ─► selection ─► metrics ─► rows ─► views
+//! files ─► content hash ─► mesh ─► (re-mesh) ─► L, B ─► spectrum ─► features ─► selection ─► metrics ─► rows ─► views
 //! ```
 //!
 //! | floor | module | what lives there |
@@ -12,7 +12,7 @@
 //! | 0 | [`watch`] | how a long computation tells its progress and learns that it was cancelled |
 //! | 0 | [`figure`] | figures for print: axes, curves, marks, maps; SVG and PNG |
 //! | 0 | [`mesh`] | the triangle mesh as a value: readers, checks, content hash, the procedural shape generator |
-//! | 1 | [`remesh`] | mesh → a mesh of the same surface with a given number of even triangles |
+//! | 1 | [`remesh`] | mesh → a mesh of the same surface with a given number of vertices, evenly spread |
 //! | 1 | [`laplacian`] | mesh → stiffness matrix L and mass matrix B |
 //! | 2 | [`spectrum`] | (L, B) → certified eigenvalues; normalisations |
 //! | 3 | [`metrics`] | features and labels → distances, rankings, classification error ε, ADR |

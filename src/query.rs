@@ -1,9 +1,9 @@
 //! The salsa database that memoises the pipeline, the pool that feeds it, and the host that owns both.
 //!
 //! - `stamp`, `library`: what is costly (content hashes, facts of meshes, spectra) is a pure function of its key, kept
-//!   in memory and in the store.
+//!   in memory and in the store. `costs`: what each took to make. `aside`: reading large files so that it can be left.
 //! - `problem`: what a spectrum is of besides the mesh: re-meshed or not, and the eigenproblem.
-//! - `pool`: the threads that fill the library, outside of the database's revisions.
+//! - `pool`: the threads that fill the library, outside of the database's revisions. `heap`: memory given back.
 //! - `db`, `rows`: inputs and tracked functions. Results are memoised under all they depend on; the rows above them cut
 //!   results to the parameters.
 //! - `single`: the spectrum of a mesh file on its own, from the same library.

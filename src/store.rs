@@ -124,6 +124,13 @@ impl Store {
         Self::on(Box::new(Local), dir, options)
     }
 
+    /// A store that misses everything and keeps nothing, for who wants neither a folder nor a warning.
+    pub fn none() -> Self {
+        let (dir, options) = (PathBuf::new(), Options::default());
+        let (disk, warnings) = (Box::new(Local), Mutex::default());
+        Self { inner: Arc::new(Inner { dir, options, disk, usable: false, warnings }) }
+    }
+
     fn on(disk: Box<dyn Disk>, dir: &Path, options: Options) -> Self {
         let dir = std::path::absolute(dir).unwrap_or_else(|_| dir.to_path_buf());
         let made = disk.make_folder(&dir);

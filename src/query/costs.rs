@@ -90,13 +90,6 @@ impl Costs {
     }
 }
 
-/// Bytes of memory that the process has now, where the system says so.
-pub(super) fn memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,11 +111,5 @@ mod tests {
         assert_eq!((later.of_spectrum(&one), later.of_spectrum(&other)), (0.75, 0.0));
         assert!((later.mean(Stage::Survey) - 0.02).abs() < 1e-12);
         assert_eq!(Costs::open(&store, Path::new("others")).of_spectrum(&one), 0.0);
-    }
-
-    #[test]
-    #[cfg(target_os = "linux")]
-    fn the_process_has_some_memory() {
-        assert!(memory().is_some_and(|bytes| bytes > 1 << 20));
     }
 }

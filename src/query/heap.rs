@@ -1,4 +1,4 @@
-//! Memory that is free, given back to the system.
+//! The process's memory: how much it has, and what is free given back to the system.
 
 /// Gives back what this process's allocator holds and nobody uses.
 ///
@@ -12,5 +12,23 @@ pub(super) fn give_back() {
         unsafe {
             libc::malloc_trim(0);
         }
+    }
+}
+
+/// Bytes of memory that the process has now, where the system says so.
+pub(super) fn memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn the_process_has_some_memory() {
+        assert!(memory().is_some_and(|bytes| bytes > 1 << 20));
     }
 }

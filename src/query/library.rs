@@ -1,7 +1,8 @@
 //! Everything that is costly to make, kept in memory and in the store: content hashes, facts of meshes, spectra.
 //!
 //! Each value is a pure function of its key, so it does not matter who made it, when, or in which session. The pool
-//! fills the library, the tracked functions of the database read from it.
+//! fills the library, the tracked functions of the database read from it. Here are the spectra, in `reading` what comes
+//! before them.
 
 use std::{
     cell::Cell,
@@ -15,18 +16,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Problem, Source, Stage,
-    aside::aside,
     costs::Costs,
     stamp::{ContentHash, Stamp},
     trace::Trace,
 };
 use crate::{
-    mesh::{self, Format, GeometryHash, Mesh, Survey},
-    remesh::RemeshError,
+    mesh::{Format, GeometryHash, Mesh, Survey},
     spectrum::{self, Band, Crew, Request, Spectrum, SpectrumError},
     store::{Key, Store},
-    watch::{Stopped, Unwatched, Watch},
+    watch::Watch,
 };
+
+mod reading;
 
 /// Why a model takes no part, in one line.
 pub type Failure = Arc<str>;
@@ -68,9 +69,6 @@ pub(crate) enum Missing {
     Unread(Failure),
 }
 
-/// Increase when readers or checks would say something else of the same bytes.
-const READER: u64 = 2;
-
 /// The finished bands of a solve that takes long are stored so often, so that not even a crash loses more.
 const KEEP: Duration = Duration::from_secs(1);
 
@@ -87,7 +85,12 @@ struct Memory {
     /// Bands of solves that were cancelled.
     begun: HashMap<(GeometryHash, Problem), Vec<Band>>,
     contents_unsaved: bool,
+    /// The mesh that was looked at last.
+    looked_at: Option<(Surface, Arc<Mesh>)>,
 }
+
+/// Which mesh: whose, and to how many vertices it was re-meshed.
+type Surface = (ContentHash, Format, Option<usize>);
 
 /// The library. Clones share it.
 #[derive(Debug, Clone)]
@@ -142,33 +145,6 @@ impl Library {
         &self.0.store
     }
 
-    /// The hash of the file's bytes, from its stamp when that was seen before.
-    pub(crate) fn content(&self, path: &Path, stamp: Stamp) -> Result<ContentHash, Failure> {
-        {
-            let memory = self.memory();
-            let mut known = [&memory.contents, &memory.fresh].into_iter().filter_map(|hashes| hashes.get(path));
-            if let Some(&(_, content)) = known.find(|(seen, _)| *seen == stamp) {
-                return Ok(content);
-            }
-        }
-        let start = Instant::now();
-        let content = ContentHash::of(&read(path)?);
-        if Stamp::of(path) != Some(stamp) {
-            return Err("the file is being changed; it is read again at the next look at the folder".into());
-        }
-        let mut memory = self.memory();
-        if stamp.settled() {
-            memory.contents.insert(path.to_owned(), (stamp, content));
-            memory.contents_unsaved = true;
-        } else {
-            memory.fresh.insert(path.to_owned(), (stamp, content));
-        }
-        drop(memory);
-        self.costs().made(Stage::Content, start.elapsed());
-        self.trace().made(Stage::Content, Source::Ran, start.elapsed());
-        Ok(content)
-    }
-
     /// Takes another look at files whose stamps could not stand for their content: returns their paths.
     pub(crate) fn doubt_fresh(&self) -> HashSet<PathBuf> {
         std::mem::take(&mut self.memory().fresh).into_keys().collect()
@@ -185,34 +161,6 @@ impl Library {
             list.sort();
             self.0.store.put(&self.0.index, &list);
         }
-    }
-
-    /// What is known of the mesh in `file`. A file that cannot be read as a mesh fails with its defect.
-    pub(crate) fn facts(&self, file: FileAt<'_>) -> Result<Arc<Facts>, Unread> {
-        let name = (file.content, file.format);
-        if let Some(known) = self.memory().facts.get(&name) {
-            return known.clone().map_err(|reason| Unread { reason, decided: true });
-        }
-        let start = Instant::now();
-        let key = Key::new("facts").number(READER).field(&file.content.0).field(file.format.ending().as_bytes());
-        let (facts, source) = if let Some(facts) = self.0.store.get::<Facts>(&key) {
-            (Ok(Arc::new(facts)), Source::Disk)
-        } else {
-            let facts = load(file).map(|mesh| Arc::new(Facts { geometry: mesh.hash(), survey: mesh::survey(&mesh) }));
-            if let Ok(facts) = &facts {
-                self.0.store.put(&key, &**facts);
-            }
-            (facts, Source::Ran)
-        };
-        // Only what the bytes decide is remembered; that a file has gone is not.
-        if !matches!(&facts, Err(failure) if !failure.decided) {
-            self.memory().facts.insert(name, facts.clone().map_err(|failure| failure.reason));
-        }
-        if source == Source::Ran {
-            self.costs().made(Stage::Survey, start.elapsed());
-        }
-        self.trace().made(Stage::Survey, source, start.elapsed());
-        facts
     }
 
     /// At least `count` eigenvalues of the mesh in `file`, or all it has.
@@ -283,14 +231,10 @@ impl Library {
         }
         let begun_key = key_of("begun");
         let known = self.known_bands(name, stored, &begun_key);
-        let (path, FileAt { format, content, .. }) = (file.path.to_owned(), file);
-        let read = move || load(FileAt { path: &path, format, content }).map(|mesh| mesh.canonical());
-        let canonical = aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??;
-        let mesh = match problem.prepare(canonical, watch) {
-            Ok(mesh) => mesh,
-            Err(RemeshError::Cancelled) => return Err(Missing::Cancelled),
-            Err(error) => return Err(self.refuse(name, &error)),
-        };
+        let mesh = reading::prepare(file, problem, watch).map_err(|missing| match missing {
+            Missing::Failed(reason) => self.refuse(name, &reason),
+            other => other,
+        })?;
         let kept = Cell::new(Instant::now());
         let keep = |bands: &[Band]| {
             if kept.get().elapsed() >= KEEP {
@@ -352,45 +296,6 @@ fn suffices(spectrum: &Spectrum, count: usize) -> bool {
     spectrum.count() >= count.min(spectrum.order)
 }
 
-/// Why a file is no mesh.
-#[derive(Debug, Clone)]
-pub(crate) struct Unread {
-    pub(crate) reason: Failure,
-    /// Whether the bytes decide it, so that it holds as long as they do.
-    pub(crate) decided: bool,
-}
-
-impl From<Unread> for Missing {
-    fn from(Unread { reason, decided }: Unread) -> Self {
-        if decided { Self::Failed(reason) } else { Self::Unread(reason) }
-    }
-}
-
-impl From<Failure> for Unread {
-    fn from(reason: Failure) -> Self {
-        Self { reason, decided: false }
-    }
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    std::fs::read(path).map_err(|error| format!("cannot be read: {error}").into())
-}
-
-/// The mesh that a problem on the mesh in `file` is on, in its canonical form. It is not kept.
-pub(crate) fn prepared(file: FileAt<'_>, problem: Problem) -> Result<Mesh, Failure> {
-    let mesh = load(file).map_err(|failure| failure.reason)?;
-    problem.prepare(mesh.canonical(), &Unwatched).map_err(|error| error.to_string().into())
-}
-
-/// Reads the mesh, and makes sure that it is still the one meant.
-fn load(file: FileAt<'_>) -> Result<Mesh, Unread> {
-    let bytes = read(file.path)?;
-    if ContentHash::of(&bytes) != file.content {
-        return Err(Failure::from("the file is being changed; it is read again at the next look at the folder").into());
-    }
-    mesh::read(&bytes, file.format).map_err(|error| Unread { reason: error.to_string().into(), decided: true })
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -398,9 +303,10 @@ mod tests {
     use super::*;
     use crate::{
         laplacian::{Mass, Operator},
-        mesh::synth,
+        mesh::{self, synth},
         spectrum::Choice,
         store,
+        watch::Unwatched,
     };
 
     /// Cancels once the first eigenvalues are there.

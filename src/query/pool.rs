@@ -16,16 +16,11 @@ use std::{
 };
 
 use super::{
-    Problem, Stage,
-    aside::aside,
-    heap,
+    Problem, Stage, heap,
     library::{Facts, Failure, FileAt, Found, Library, Missing},
     stamp::Stamp,
 };
-use crate::{
-    mesh::Format,
-    watch::{Stopped, Watch},
-};
+use crate::{mesh::Format, watch::Watch};
 
 /// The nice value of polite threads: of a core they share with the screen's thread they get a tenth.
 #[cfg(target_os = "linux")]
@@ -239,15 +234,8 @@ fn work(shared: &Shared, thread: usize) {
 }
 
 fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts>>) -> Result<Found, (Stage, Missing)> {
-    let unread = |reason| (Stage::Content, Missing::Unread(reason));
-    let stamp = job.stamp.ok_or_else(|| unread("the file is gone".into()))?;
-    let (library, path, format) = (shared.library.clone(), job.path.clone(), job.format);
-    let examine = move || {
-        let content = library.content(&path, stamp).map_err(unread)?;
-        let facts = library.facts(FileAt { path: &path, format, content });
-        facts.map(|facts| (content, facts)).map_err(|failure| (Stage::Survey, failure.into()))
-    };
-    let (content, known) = aside(&job.path, eye, examine).map_err(|Stopped| (Stage::Content, Missing::Cancelled))??;
+    let stamp = job.stamp.ok_or_else(|| (Stage::Content, Missing::Unread("the file is gone".into())))?;
+    let (content, known) = shared.library.examine(&job.path, job.format, stamp, eye)?;
     let file = FileAt { path: &job.path, format: job.format, content };
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));

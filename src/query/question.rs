@@ -10,7 +10,7 @@ use super::{
     db::{Cohort, Database, ModelFile},
     examined,
     inquiry::Members,
-    library::{self, Failure, FileAt, Library, Missing},
+    library::{Failure, FileAt, Library, Missing},
     reasons,
     stamp::Stamp,
 };
@@ -191,12 +191,12 @@ impl Looking {
         let ModelAt { path, format, stamp } = &self.file;
         let stamp = stamp.ok_or_else(|| Failure::from("the file is not there"))?;
         let file = FileAt { path, format: *format, content: self.library.content(path, stamp)? };
-        let mesh = library::prepared(file, self.problem)?;
-        let Question::Function { index, .. } = self.question else { return Ok(Finding::Shape(Arc::new(mesh))) };
         let missing = |missing: Missing| match missing {
             Missing::Failed(reason) | Missing::Unread(reason) => reason,
             Missing::Cancelled => "it is no longer wanted".into(),
         };
+        let mesh = self.library.prepared(file, self.problem).map_err(missing)?;
+        let Question::Function { index, .. } = self.question else { return Ok(Finding::Shape(mesh)) };
         let facts = self.library.facts(file).map_err(|unread| unread.reason)?;
         let count = self.settings.kmax.max(index);
         let found = self.library.spectrum(file, &facts, self.problem, count, &Unwatched).map_err(missing)?;

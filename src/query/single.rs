@@ -1,20 +1,18 @@
 //! The spectrum of a mesh file on its own: what a study does for each of its models.
 
-use std::{path::Path, sync::Arc, time::Instant};
+use std::{path::Path, sync::Arc};
 
 use super::{
     Problem, Source,
-    aside::aside,
     library::{FileAt, Library, Missing},
     stamp::Stamp,
     trace::Trace,
 };
 use crate::{
-    mesh::{self, Format, GeometryHash, Survey},
-    remesh::RemeshError,
-    spectrum::{self, Crew, Request, Spectrum, SpectrumError},
+    mesh::{Format, GeometryHash, Survey},
+    spectrum::{Crew, Spectrum},
     store::Store,
-    watch::{Stopped, Watch},
+    watch::Watch,
 };
 
 /// A mesh file's spectrum, with what is known of the mesh.
@@ -46,23 +44,20 @@ pub enum SingleError {
 /// Solves single files, any number at once; with a store, as a study would, so that each profits from the other.
 #[derive(Debug)]
 pub struct Singles {
-    library: Option<Library>,
-    /// For solves without a store.
-    alone: Crew,
+    library: Library,
 }
 
 impl Singles {
-    /// Keeps spectra in `store`, or nowhere.
+    /// Keeps spectra in `store`, or in memory alone.
     #[must_use]
     pub fn new(store: Option<Store>) -> Self {
-        let library = store.map(|store| Library::open(store, Trace::default(), Path::new("")));
-        Self { library, alone: Crew::default() }
+        Self { library: Library::open(store.unwrap_or_else(Store::none), Trace::default(), Path::new("")) }
     }
 
     /// Threads that have no file of their own can help here with those of others.
     #[must_use]
     pub fn crew(&self) -> &Crew {
-        self.library.as_ref().map_or(&self.alone, Library::crew)
+        self.library.crew()
     }
 
     /// The first `count` eigenvalues, or more, of the mesh in the file at `path`.
@@ -73,28 +68,20 @@ impl Singles {
         let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
         let format =
             Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
-        let Some(library) = &self.library else {
-            return solve_alone(path, format, problem, (count, &self.alone), watch);
-        };
         let stamp = match std::fs::metadata(path) {
             Ok(metadata) if metadata.is_dir() => return Err(failed(&"a folder, not a mesh")),
             Ok(_) => Stamp::of(path),
             Err(error) => return Err(failed(&format!("cannot be read: {error}"))),
         };
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
-        let (reader, owned) = (library.clone(), path.to_owned());
-        let examine = move || {
-            let content = reader.content(&owned, stamp)?;
-            let facts = reader.facts(FileAt { path: &owned, format, content });
-            facts.map(|facts| (content, facts)).map_err(|failure| failure.reason)
-        };
-        let examined = aside(path, watch, examine).map_err(|Stopped| SingleError::Cancelled)?;
-        let (content, facts) = examined.map_err(|reason| failed(&reason))?;
-        let file = FileAt { path, format, content };
-        let found = library.spectrum(file, &facts, problem, count, watch).map_err(|missing| match missing {
+        let missed = |missing| match missing {
             Missing::Cancelled => SingleError::Cancelled,
             Missing::Failed(reason) | Missing::Unread(reason) => failed(&reason),
-        })?;
+        };
+        let (content, facts) =
+            self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missed(missing))?;
+        let file = FileAt { path, format, content };
+        let found = self.library.spectrum(file, &facts, problem, count, watch).map_err(missed)?;
         Ok(Single {
             geometry: facts.geometry,
             survey: facts.survey.clone(),
@@ -103,45 +90,4 @@ impl Singles {
             seconds: found.seconds,
         })
     }
-}
-
-/// The same without a store.
-fn solve_alone(
-    path: &Path,
-    format: Format,
-    problem: Problem,
-    (count, crew): (usize, &Crew),
-    watch: &dyn Watch,
-) -> Result<Single, SingleError> {
-    let start = Instant::now();
-    let owned = path.to_owned();
-    let examine = move || {
-        let bytes = std::fs::read(&owned).map_err(|error| format!("cannot be read: {error}"))?;
-        let mesh = mesh::read(&bytes, format).map_err(|error| error.to_string())?;
-        let survey = mesh::survey(&mesh);
-        match survey.refusal() {
-            Some(reason) => Err(reason),
-            None => Ok((mesh.hash(), survey, mesh.canonical())),
-        }
-    };
-    let examined = aside(path, watch, examine).map_err(|Stopped| SingleError::Cancelled)?;
-    let (geometry, survey, canonical) = examined.map_err(SingleError::Failed)?;
-    let prepared = problem.prepare(canonical, watch).map_err(|error| match error {
-        RemeshError::Cancelled => SingleError::Cancelled,
-        error => SingleError::Failed(error.to_string()),
-    })?;
-    let request = Request { crew: Some(crew), ..Request::new(count) };
-    let solved = spectrum::solve_with(&prepared, problem.choice, &request, watch);
-    let mut spectrum = solved.map_err(|error| match error {
-        SpectrumError::Cancelled { .. } => SingleError::Cancelled,
-        error => SingleError::Failed(error.to_string()),
-    })?;
-    spectrum.notes.splice(0..0, problem.note());
-    Ok(Single {
-        geometry,
-        survey,
-        spectrum: Arc::new(spectrum),
-        source: Source::Ran,
-        seconds: start.elapsed().as_secs_f64(),
-    })
 }

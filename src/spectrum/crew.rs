@@ -30,12 +30,6 @@ pub struct Crew {
 }
 
 impl Crew {
-    /// Whether a solve is under way.
-    #[must_use]
-    pub fn is_busy(&self) -> bool {
-        !self.open().is_empty()
-    }
-
     /// Helps with the solves that are under way, and with those that begin, until `leave` cancels; then it returns
     /// within 50 ms.
     pub fn help(&self, leave: &dyn Watch) {
@@ -79,7 +73,7 @@ impl Crew {
         })
     }
 
-    fn open(&self) -> MutexGuard<'_, Vec<Arc<Team>>> {
+    pub(super) fn open(&self) -> MutexGuard<'_, Vec<Arc<Team>>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Duration};
 use super::{Host, Row};
 use crate::{
     dataset::Model,
-    query::{Answer, ModelRow, ModelState, Progress, Stage, StageRow, costs},
+    query::{Answer, ModelRow, ModelState, Progress, Stage, StageRow, heap},
 };
 
 impl Host {
@@ -38,7 +38,7 @@ impl Host {
             marks: shown.marks.clone(),
             tables: shown.tables.clone(),
             short: self.too_short(),
-            memory: costs::memory(),
+            memory: heap::memory(),
             warnings: Arc::new(warnings),
         }
     }
