@@ -26,8 +26,11 @@ use eigenselect::{
     query::{Answer, Parameter, Settings},
     ui::{self, Look, Shades},
     workbench::{
-        Action, Command, Content, Effect, Figure, Filter, Leave, State, Trial, View, experiment::Face, keymap, pins,
-        recipe, shape::Style, update,
+        Action, Command, Content, Effect, Figure, Filter, Leave, State, Trial, Update, View,
+        experiment::Face,
+        keymap, pins, recipe,
+        shape::{self, Style},
+        update,
     },
 };
 use ratatui::{
@@ -178,7 +181,7 @@ fn settings_are_compared_with_pins() {
     let mut state = replies::served(shown(state, View::Compare));
     assert_eq!(state.tried, [state.pins[1].settings.clone()], "the other pin is what is on the screen");
     let trial = tried(&state, &state.pins[1].settings.clone());
-    update(&mut state, Action::Trial(Arc::new(trial)));
+    update(&mut state, Action::News(Update::Trial(Arc::new(trial))));
     assert!(state.tried.is_empty());
     compare("Compare-pins", &drawn(&state, SMALL));
     let tables = State { view: View::Tables, size: MEDIUM, ..state.clone() };
@@ -203,13 +206,13 @@ fn a_sweep_fills_its_curve() {
     assert_eq!(state.tried, swept);
     for settings in swept.iter().take(9) {
         let trial = tried(&state, settings);
-        update(&mut state, Action::Trial(Arc::new(trial)));
+        update(&mut state, Action::News(Update::Trial(Arc::new(trial))));
     }
     compare("Compare-sweep", &drawn(&state, SMALL));
     update(&mut state, Action::Choose(Parameter::Distance));
     update(&mut state, Action::Sweep);
     let trial = tried(&state, &state.sweep.as_ref().unwrap().settings[1].clone());
-    update(&mut state, Action::Trial(Arc::new(trial)));
+    update(&mut state, Action::News(Update::Trial(Arc::new(trial))));
     compare("Compare-words", &drawn(&state, SMALL));
 }
 
@@ -441,6 +444,31 @@ fn a_value_is_typed_in_the_footer() {
 }
 
 #[test]
+fn every_number_of_an_explanation_is_faint_while_it_is_stale() {
+    for (view, size) in
+        [View::Confusion, View::Neighbours].into_iter().flat_map(|v| [SMALL, MEDIUM, LARGE].map(|s| (v, s)))
+    {
+        let mut state = sample::state(sample::full());
+        update(&mut state, Action::Resize(size.0, size.1));
+        let mut state = shown(state, view);
+        state.alone = true;
+        // Below the title, and above the small pictures and the footer.
+        let below = if shape::thumbs(size) > 0 { shape::THUMB.1 + 5 } else { 4 };
+        let numbers = |state: &State| {
+            let buffer = buffer(state, Look::default(), size);
+            let cells = (4..size.1 - below).flat_map(|row| (0..size.0).map(move |column| (column, row)));
+            let digits = cells.map(|at| buffer[at].clone()).filter(|cell| cell.symbol().chars().all(char::is_numeric));
+            let dim: Vec<bool> = digits.map(|cell| cell.modifier.contains(Modifier::DIM)).collect();
+            (dim.len(), dim.iter().filter(|dim| !**dim).count())
+        };
+        let (all, strong) = numbers(&state);
+        assert!(all > 20 && strong > 10, "{view:?} {size:?}: {all}, {strong}");
+        state.settings.set(Parameter::Distance, "l1", 1).unwrap();
+        assert_eq!(numbers(&state).1, 0, "{view:?} {size:?}");
+    }
+}
+
+#[test]
 fn what_is_stale_is_faint_and_says_so() {
     let mut state = sample::state(sample::full());
     let faint = |state: &State, word: &str| {
@@ -516,7 +544,7 @@ fn moods() -> Vec<State> {
     update(&mut typing, Action::Edit);
     (0..40).for_each(|_| drop(update(&mut typing, Action::Insert('象'))));
     let mut dead = sample::state(sample::hostile());
-    update(&mut dead, Action::Fatal("\u{1b}[2J the engine ".repeat(30)));
+    update(&mut dead, Action::News(Update::Fatal("\u{1b}[2J the engine ".repeat(30))));
     let mut told = sample::state(sample::full());
     update(&mut told, Action::Journal);
     moods.extend([helped, typing, dead, told]);
@@ -558,7 +586,7 @@ fn ten_thousand_random_keys_leave_a_screen_that_lives() {
                 if let Effect::Send(Command::Set(settings)) = effect {
                     let serial = state.answer.serial + 1;
                     let answer = Answer { serial, settings, ..(*state.answer).clone() };
-                    update(&mut state, Action::Answer(Arc::new(answer)));
+                    update(&mut state, Action::News(Update::Answer(Arc::new(answer))));
                 }
             }
             if press % 40 == 0 {

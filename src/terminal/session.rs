@@ -145,55 +145,7 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
             // On its way when the mouse was let go.
             Event::Click(_) => {}
             Event::Resized => self.measure()?,
-            Event::Update(Update::Answer(answer)) => {
-                let awaited =
-                    answer.settings == self.state.settings && self.state.answer.settings != self.state.settings;
-                let at_once = awaited || answer.progress.complete();
-                let next = self.progressed.map(|last| last + PACE).filter(|_| !at_once);
-                self.due.sooner(next.map_or(Due::Now, Due::At));
-                self.fresh = true;
-                self.apply(Action::Answer(answer));
-            }
-            Event::Update(Update::Reply(reply)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Reply(reply));
-            }
-            Event::Update(Update::Trial(trial)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Trial(trial));
-            }
-            Event::Update(Update::Trying(settings, done, total)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Trying(settings, done, total));
-            }
-            Event::Update(Update::Paper(told)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Paper(told));
-            }
-            Event::Update(Update::Varied(varied)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Varied(varied));
-            }
-            Event::Update(Update::Note(line)) => {
-                // A journal that nobody looks at changes nothing that is seen.
-                if self.state.told.is_some() {
-                    self.due.sooner(Due::Now);
-                }
-                self.apply(Action::Note(line));
-            }
-            Event::Update(Update::Written(path, outcome)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Written(path, outcome));
-            }
-            Event::Update(Update::Rescanned) => self.apply(Action::Rescanned),
-            Event::Update(Update::Picture(scene, picture)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Picture(scene, picture));
-            }
-            Event::Update(Update::Fatal(reason)) => {
-                self.due.sooner(Due::Now);
-                self.apply(Action::Fatal(reason));
-            }
+            Event::Update(news) => self.hear(news),
             Event::Panic(text) => {
                 self.due.sooner(Due::Now);
                 self.apply(Action::Report(text));
@@ -227,7 +179,27 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
         Ok(None)
     }
 
-    /// Applies news: they ask for nothing but what the view wants to know next.
+    /// Takes in what the engine tells, and says when that is drawn.
+    fn hear(&mut self, news: Update) {
+        let due = match &news {
+            Update::Answer(answer) => {
+                let awaited =
+                    answer.settings == self.state.settings && self.state.answer.settings != self.state.settings;
+                let at_once = awaited || answer.progress.complete();
+                self.fresh = true;
+                self.progressed.filter(|_| !at_once).map_or(Due::Now, |last| Due::At(last + PACE))
+            }
+            // A journal that nobody looks at changes nothing that is seen.
+            Update::Note(_) if self.state.told.is_none() => Due::Never,
+            // The answer that follows is drawn.
+            Update::Rescanned => Due::Never,
+            _ => Due::Now,
+        };
+        self.due.sooner(due);
+        self.apply(Action::News(news));
+    }
+
+    /// Applies what no key asked for: it asks for nothing but what the view wants to know next.
     fn apply(&mut self, action: Action) {
         for effect in update(&mut self.state, action) {
             if let Effect::Send(command) = effect {

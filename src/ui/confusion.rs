@@ -55,6 +55,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let mut rest = pane.area();
     let head = pane::cut_top(&mut rest, 1);
     title(state, decisions, stale, &mut pane.part(head));
+    let body = rest;
     let wanted = gutter(state) + cell(&matrix) * matrix.counts.len() as u16 + WRONG + 1;
     let classes = matrix.counts.len() as u16;
     let roomy = rest.height >= 12 && rest.width >= wanted + 34;
@@ -88,10 +89,10 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
             below.put(1, 0, &text::fit(&most_confused(state, &matrix), room), Role::Plain);
         }
         let said = cell_in_words(state, &matrix);
-        below.put(1, y, &text::fit(&said, (below.width() as usize).saturating_sub(2)), Role::Strong);
+        below.put(1, y, &text::fit(&said, room), Role::Strong);
     }
     if stale {
-        pane.part(rest).fade();
+        pane.part(body).fade();
     }
 }
 

@@ -73,6 +73,7 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         let chosen = (count > 0).then(|| 1 + at - first_pictured(state, count));
         shape::strip(state, &pictured, chosen, &mut pane.part(below));
     }
+    let body = rest;
     if rest.width >= 100 {
         let half = rest.width * 2 / 5;
         let list = pane::cut_left(&mut rest, half);
@@ -85,9 +86,6 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         terms::draw(state, row, reasons, at, &mut pane.part(upper));
         if !votes {
             terms::overlay(state, row, reasons, at, &mut pane.part(rest));
-        }
-        if stale {
-            pane.part(list).fade();
         }
     } else {
         let below = if rest.height >= 11 { rest.height * 3 / 5 } else { 0 };
@@ -103,12 +101,9 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         } else {
             terms::draw(state, row, reasons, at, &mut pane.part(rest));
         }
-        if stale {
-            pane.part(list).fade();
-        }
     }
     if stale {
-        pane.part(rest).fade();
+        pane.part(body).fade();
     }
 }
 

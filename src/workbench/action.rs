@@ -1,14 +1,7 @@
 //! Everything that can happen to the state, and everything the state can ask for.
 
-use std::{path::PathBuf, sync::Arc};
-
-use super::{
-    Command, Trial, View,
-    experiment::{Told, Varied},
-    journal::Line,
-    shape::{Picture, Scene},
-};
-use crate::query::{Answer, Parameter, Reply, Settings};
+use super::{Command, Update, View};
+use crate::query::Parameter;
 
 /// Something that happened: a key's meaning, or news.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,28 +168,8 @@ pub enum Action {
     Commit,
     /// The screen has this size now, columns and rows.
     Resize(u16, u16),
-    /// An answer of the engine.
-    Answer(Arc<Answer>),
-    /// An answer of the engine to a question.
-    Reply(Arc<Reply>),
-    /// The files were looked at again.
-    Rescanned,
-    /// Figures under other parameters.
-    Trial(Arc<Trial>),
-    /// A trial has so many models of so many.
-    Trying(Settings, usize, usize),
-    /// News of the paper's document.
-    Paper(Told),
-    /// The variants of a shape.
-    Varied(Arc<Varied>),
-    /// A line for the journal.
-    Note(Line),
-    /// A file was written, or why not.
-    Written(PathBuf, Result<(), String>),
-    /// A scene that was painted.
-    Picture(Scene, Arc<Picture>),
-    /// The engine cannot go on.
-    Fatal(String),
+    /// News from the engine.
+    News(Update),
     /// Something the user should know, in one line.
     Report(String),
 }

@@ -77,7 +77,7 @@ impl Content {
 }
 
 /// News from the engine.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Update {
     /// The newest answer, perhaps a partial one.
     Answer(Arc<Answer>),

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    Action, Change, Command, Effect, Entry, Figure, Leave, Mouse, Notice, Palette, Purpose, State, View, asking,
-    experiment, explore, leave, lists, palette, parameters, pins,
+    Action, Change, Command, Effect, Entry, Figure, Leave, Mouse, Notice, Palette, Purpose, State, Update, View,
+    asking, experiment, explore, leave, lists, palette, parameters, pins,
 };
 use crate::query::{Answer, Parameter, Settings};
 
@@ -41,22 +41,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
 }
 
 fn happen(state: &mut State, action: Action) -> Vec<Effect> {
-    if !matches!(
-        action,
-        Action::Answer(_)
-            | Action::Reply(_)
-            | Action::Picture(..)
-            | Action::Rescanned
-            | Action::Trial(_)
-            | Action::Trying(..)
-            | Action::Paper(_)
-            | Action::Varied(_)
-            | Action::Note(_)
-            | Action::Written(..)
-            | Action::Resize(..)
-            | Action::Report(_)
-            | Action::Fatal(_)
-    ) {
+    if !matches!(action, Action::News(_) | Action::Resize(..) | Action::Report(_)) {
         state.notice = None;
     }
     match action {
@@ -80,17 +65,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Undo => return travel(state, true),
         Action::Redo => return travel(state, false),
         Action::Commit => return commit(state),
-        Action::Answer(answer) => receive(state, answer),
-        Action::Reply(reply) => {
-            state.looked_for.retain(|question| *question != reply.question);
-            state.replies.take(reply);
-            pins::complete(state);
-        }
-        Action::Trial(trial) => pins::take(state, &trial),
-        Action::Trying(settings, done, total) => state.experiment.trying = Some((settings, done, total)),
-        Action::Paper(told) => experiment::told(state, told),
-        Action::Varied(varied) => experiment::varied(state, varied),
-        Action::Note(line) => state.journal.take(line),
+        Action::News(news) => hear(state, news),
         Action::Switch => return experiment::switch(state),
         Action::SwitchOff => return experiment::switch_off(state),
         Action::WritePaper => return experiment::document(state),
@@ -101,7 +76,6 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
             say(state, if ours { selects } else { "the mouse belongs to the terminal" });
             return vec![Effect::Mouse(ours)];
         }
-        Action::Written(path, outcome) => leave::told(state, &path, outcome),
         Action::WriteView => {
             let proposed = leave::proposed(state);
             leave::name(state, &proposed);
@@ -115,18 +89,6 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Set(parameter, value) => return set(state, parameter, &value),
         Action::TellApart => return explore::tell_apart(state),
         Action::Recall => return recall(state),
-        Action::Rescanned => {
-            state.changed = Some(Change::of_files());
-            state.replies.clear_surfaces();
-            state.looked_for.clear();
-        }
-        Action::Picture(scene, picture) => {
-            // A picture of a scene that is no longer wanted would replace a newer one.
-            if state.scenes.contains(&scene) {
-                state.pictures.take(scene, picture);
-            }
-        }
-        Action::Fatal(reason) => state.fatal = Some(reason),
         Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
         Action::Insert(_) | Action::Erase | Action::EraseAll | Action::Left | Action::Right => typed(state, &action),
@@ -137,6 +99,33 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         other => look(state, &other),
     }
     Vec::new()
+}
+
+/// Takes in what the engine tells.
+fn hear(state: &mut State, news: Update) {
+    match news {
+        Update::Answer(answer) => receive(state, answer),
+        Update::Reply(reply) => {
+            state.looked_for.retain(|question| *question != reply.question);
+            state.replies.take(reply);
+            pins::complete(state);
+        }
+        Update::Rescanned => {
+            state.changed = Some(Change::of_files());
+            state.replies.clear_surfaces();
+            state.looked_for.clear();
+        }
+        Update::Trial(trial) => pins::take(state, &trial),
+        Update::Trying(settings, done, total) => state.experiment.trying = Some((settings, done, total)),
+        Update::Paper(told) => experiment::told(state, told),
+        Update::Varied(varied) => experiment::varied(state, varied),
+        Update::Note(line) => state.journal.take(line),
+        Update::Written(path, outcome) => leave::told(state, &path, outcome),
+        // A picture of a scene that is no longer wanted would replace a newer one.
+        Update::Picture(scene, picture) if state.scenes.contains(&scene) => state.pictures.take(scene, picture),
+        Update::Picture(..) => {}
+        Update::Fatal(reason) => state.fatal = Some(reason),
+    }
 }
 
 /// What changes only how the state is looked at.
@@ -211,17 +200,17 @@ fn choose(state: &mut State, parameter: Parameter) {
     }
 }
 
-/// One line up or down: in the help, in the list of models, else in the panel of parameters.
+/// One line up or down: in what is open above the view, in its list, else in the panel of parameters.
 fn step(state: &mut State, by: isize) {
-    if state.view == View::Pipeline && state.help.is_none() && state.palette.is_none() {
+    let open = state.help.is_some() || state.told.is_some() || state.palette.is_some();
+    if state.view == View::Pipeline && !open {
         let listed = lists::stages(state);
         let at = listed.iter().position(|place| *place == state.stage).unwrap_or(0);
         let next = at.saturating_add_signed(by).min(listed.len().saturating_sub(1));
         state.stage = listed.get(next).copied().unwrap_or(0);
         return;
     }
-    let lists = matches!(state.view, View::Models | View::Neighbours | View::Compare);
-    if lists || state.help.is_some() || state.told.is_some() || state.palette.is_some() {
+    if open || matches!(state.view, View::Models | View::Neighbours | View::Compare) {
         scroll(state, by);
         return;
     }

@@ -7,7 +7,7 @@ use eigenselect::{
     query::Parameter,
     report::paper::variation::Spectra,
     workbench::{
-        Action, Command, Effect, State, View,
+        Action, Command, Effect, State, Update, View,
         experiment::{Face, Standing, Told, Varied},
         export,
         journal::{Line, Weight},
@@ -39,10 +39,10 @@ pub fn faced(face: Face, size: (u16, u16)) -> State {
                 let first_k = Arc::make_mut(trial.figures.first_k.as_mut().unwrap());
                 let less = if settings.remesh.is_some() { 0.1 } else { 0.05 };
                 first_k.error.train.iter_mut().for_each(|value| *value -= less);
-                update(&mut state, Action::Trial(Arc::new(trial)));
+                update(&mut state, Action::News(Update::Trial(Arc::new(trial))));
             }
             let last = state.tried.last().unwrap().clone();
-            update(&mut state, Action::Trying(last, 120, 380));
+            update(&mut state, Action::News(Update::Trying(last, 120, 380)));
         }
         Face::Variation => {
             let effects = update(&mut state, Action::Switch);
@@ -56,7 +56,7 @@ pub fn faced(face: Face, size: (u16, u16)) -> State {
             };
             let variants = [("original", 0.0), ("rotated", 0.0), ("bent by 60°", 0.03), ("refined", 0.004)].map(of);
             let varied = Varied { settings: settings.clone(), variants: Ok(Arc::new(variants.to_vec())) };
-            update(&mut state, Action::Varied(Arc::new(varied)));
+            update(&mut state, Action::News(Update::Varied(Arc::new(varied))));
         }
     }
     state
@@ -124,14 +124,14 @@ fn the_document_is_written_by_a_key_and_called_off_by_it() {
     assert_eq!(effects, [Effect::Send(Command::Paper("paper".into()))]);
     update(&mut state, Action::Close);
     update(&mut state, Action::Show(View::Tables));
-    update(&mut state, Action::Paper(Told::Progress(1200, 3420)));
+    update(&mut state, Action::News(Update::Paper(Told::Progress(1200, 3420))));
     let foot = |state: &State| drawn(state, SMALL).lines().nth(22).unwrap().to_owned();
     assert!(foot(&state).contains("the paper's document to paper: 1200/3420"), "{}", foot(&state));
     assert!(foot(&state).contains("X calls it off"));
     let effects = update(&mut state, Action::WritePaper);
     assert_eq!(effects, [Effect::Send(Command::StopPaper)]);
     assert!(foot(&state).contains("being called off"));
-    update(&mut state, Action::Paper(Told::Done(Err("interrupted".to_owned()))));
+    update(&mut state, Action::News(Update::Paper(Told::Done(Err("interrupted".to_owned())))));
     assert!(foot(&state).contains("paper: interrupted") && state.experiment.document.is_none());
 }
 
@@ -145,7 +145,7 @@ fn the_journal_is_shown_the_newest_first() {
         (14, Weight::Error, "curves.png: cannot be written"),
     ] {
         let line = Line { at: Duration::from_millis(1000 * second + 25), weight, text: text.to_owned() };
-        update(&mut state, Action::Note(line));
+        update(&mut state, Action::News(Update::Note(line)));
     }
     update(&mut state, Action::Journal);
     compare("journal-80x24", &drawn(&state, SMALL));

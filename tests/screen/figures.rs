@@ -4,7 +4,7 @@ use eigenselect::{
     query::Parameter,
     study::Method,
     workbench::{
-        Action, Content, Effect, Figure, State, View,
+        Action, Content, Effect, Figure, State, Update, View,
         export::{Drawing, drawing},
         update,
     },
@@ -34,7 +34,7 @@ fn faces() -> Vec<(String, State)> {
     update(&mut pinned, Action::Undo);
     for settings in pinned.tried.clone() {
         let trial = tried(&pinned, &settings);
-        update(&mut pinned, Action::Trial(std::sync::Arc::new(trial)));
+        update(&mut pinned, Action::News(Update::Trial(std::sync::Arc::new(trial))));
     }
     faces.push(("curves-pinned".to_owned(), shown(pinned.clone(), View::Curves)));
     faces.push(("compare-pins".to_owned(), shown(pinned, View::Compare)));
@@ -45,7 +45,7 @@ fn faces() -> Vec<(String, State)> {
         swept.why.method = Method::Boost;
         for settings in swept.tried.clone().into_iter().take(9) {
             let trial = tried(&swept, &settings);
-            update(&mut swept, Action::Trial(std::sync::Arc::new(trial)));
+            update(&mut swept, Action::News(Update::Trial(std::sync::Arc::new(trial))));
         }
         faces.push((format!("compare-{}", parameter.name()), swept));
     }

@@ -12,7 +12,7 @@ use eigenselect::{
     spectrum::Normalisation,
     study::{Curve, Method, Retrieved, Scheme, Score, why},
     workbench::{
-        Action, State,
+        Action, State, Update,
         shape::{Picture, Solid},
         update,
     },
@@ -126,7 +126,7 @@ pub fn served(mut state: State) -> State {
         for question in state.asked.clone() {
             let (finding, places) = find(&answer, &question);
             let reply = Reply { question, settings: answer.settings.clone(), places, finding };
-            update(&mut state, Action::Reply(Arc::new(reply)));
+            update(&mut state, Action::News(Update::Reply(Arc::new(reply))));
         }
         let ring = ring();
         while let Some(question) = state.looked_for.first().cloned() {
@@ -139,13 +139,13 @@ pub fn served(mut state: State) -> State {
                 _ => Ok(Finding::Shape(Arc::clone(&ring))),
             };
             let reply = Reply { question, settings: answer.settings.clone(), places: Arc::default(), finding };
-            update(&mut state, Action::Reply(Arc::new(reply)));
+            update(&mut state, Action::News(Update::Reply(Arc::new(reply))));
         }
         for scene in state.scenes.clone() {
             let values = scene.function.as_ref().map(|function| function.values.as_slice());
             let solid = Solid::new(&scene.mesh);
             let picture = Picture::paint(&solid, scene.camera, scene.pixels(), scene.style.aspect(), values);
-            update(&mut state, Action::Picture(scene, Arc::new(picture)));
+            update(&mut state, Action::News(Update::Picture(scene, Arc::new(picture))));
         }
     }
     state

@@ -7,7 +7,7 @@ use eigenselect::{
     query::{Answer, ModelRow, ModelState, Part, Progress, Settings, Source, Stage, StageRow},
     selection::{Climb, Round, Step, Strong},
     study::{self, Boosted, Cell, Climbed, Curve, FirstK, Mark, Score, Table},
-    workbench::{Action, State, update},
+    workbench::{Action, State, Update, update},
 };
 
 /// A small generator of the multiplicative kind: enough to make numbers look like measurements.
@@ -342,6 +342,6 @@ pub fn nonsense() -> Answer {
 /// The screen with this answer on it.
 pub fn state(answer: Answer) -> State {
     let mut state = State::new("data/shrec07", answer.settings.clone());
-    update(&mut state, Action::Answer(Arc::new(answer)));
+    update(&mut state, Action::News(Update::Answer(Arc::new(answer))));
     state
 }

@@ -1,12 +1,15 @@
 //! What each action does to the state, and what it asks of the engine.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 use super::*;
 use crate::{
     dataset::Role,
     query::{ModelRow, ModelState, Stage},
-    workbench::Filter,
+    workbench::{
+        Filter,
+        journal::{Line, Weight},
+    },
 };
 
 fn model(name: &str, defects: &[&str], out: bool) -> ModelRow {
@@ -41,7 +44,7 @@ fn answer(serial: u64, settings: &Settings) -> Arc<Answer> {
 fn opened() -> State {
     let mut state = State::new("data", Settings::default());
     let first = answer(1, &state.settings);
-    update(&mut state, Action::Answer(first));
+    update(&mut state, Action::News(Update::Answer(first)));
     state
 }
 
@@ -54,6 +57,19 @@ fn sent(effects: &[Effect]) -> Option<&Settings> {
 
 fn play(state: &mut State, actions: impl IntoIterator<Item = Action>) -> Vec<Effect> {
     actions.into_iter().flat_map(|action| update(state, action)).collect()
+}
+
+#[test]
+fn arrows_scroll_what_is_open_above_the_view() {
+    let mut state = opened();
+    state.view = View::Pipeline;
+    for at in 0..3 {
+        let line = Line { at: Duration::from_secs(at), weight: Weight::Note, text: format!("line {at}") };
+        update(&mut state, Action::News(Update::Note(line)));
+    }
+    update(&mut state, Action::Journal);
+    update(&mut state, Action::Down);
+    assert_eq!((state.told, state.stage), (Some(1), 0));
 }
 
 #[test]
@@ -73,10 +89,10 @@ fn only_what_depends_on_the_turned_parameter_is_stale_and_only_until_its_answer(
     assert!(state.awaits(Stage::Boost) && state.awaits(Stage::Tables));
     assert!(!state.awaits(Stage::FirstK) && !state.awaits(Stage::Spectrum));
     let late = answer(2, &Settings::default());
-    update(&mut state, Action::Answer(late));
+    update(&mut state, Action::News(Update::Answer(late)));
     assert!(state.awaits(Stage::Boost));
     let right = answer(3, &state.settings);
-    update(&mut state, Action::Answer(right));
+    update(&mut state, Action::News(Update::Answer(right)));
     assert!(!state.awaits(Stage::Boost) && !state.awaits(Stage::Tables));
 }
 
@@ -84,9 +100,9 @@ fn only_what_depends_on_the_turned_parameter_is_stale_and_only_until_its_answer(
 fn an_answer_that_was_overtaken_is_dropped() {
     let mut state = opened();
     let newer = answer(7, &state.settings);
-    update(&mut state, Action::Answer(Arc::clone(&newer)));
+    update(&mut state, Action::News(Update::Answer(Arc::clone(&newer))));
     let older = answer(6, &state.settings);
-    update(&mut state, Action::Answer(older));
+    update(&mut state, Action::News(Update::Answer(older)));
     assert_eq!(state.answer.serial, newer.serial);
 }
 
@@ -214,7 +230,7 @@ fn the_list_of_models_moves_and_filters() {
     play(&mut state, [Action::First, Action::Up]);
     assert_eq!(state.model(), Some(0));
     let gone = Arc::new(Answer { serial: 9, ..Answer::default() });
-    update(&mut state, Action::Answer(gone));
+    update(&mut state, Action::News(Update::Answer(gone)));
     assert_eq!(state.model(), None);
 }
 
@@ -241,7 +257,7 @@ fn classes_are_compared_and_vanish_with_their_class() {
     play(&mut state, [Action::Turn(1), Action::Compare]);
     assert_eq!(state.shown_classes(), [2, 0]);
     let fewer = Arc::new(Answer { serial: 9, ..Answer::default() });
-    update(&mut state, Action::Answer(fewer));
+    update(&mut state, Action::News(Update::Answer(fewer)));
     assert_eq!(state.shown_classes(), Vec::<usize>::new());
     update(&mut state, Action::Compare);
     assert!(state.compared.is_empty());
@@ -253,7 +269,7 @@ fn solving_stops_and_goes_on_until_the_engine_is_gone() {
     assert_eq!(update(&mut state, Action::ToggleSolving), [Effect::Send(Command::Stop)]);
     assert!(state.stopped);
     assert_eq!(update(&mut state, Action::ToggleSolving), [Effect::Send(Command::Resume)]);
-    update(&mut state, Action::Fatal("no more".to_owned()));
+    update(&mut state, Action::News(Update::Fatal("no more".to_owned())));
     assert_eq!(update(&mut state, Action::ToggleSolving), []);
 }
 
@@ -263,14 +279,14 @@ fn a_notice_lasts_until_the_next_key_and_not_until_the_next_answer() {
     update(&mut state, Action::Undo);
     assert!(state.notice.is_some());
     let next = answer(2, &state.settings);
-    update(&mut state, Action::Answer(next));
+    update(&mut state, Action::News(Update::Answer(next)));
     assert!(state.notice.is_some());
     update(&mut state, Action::Down);
     assert_eq!(state.notice, None);
     assert_eq!(update(&mut state, Action::Rescan), [Effect::Send(Command::Rescan)]);
     assert!(state.notice.is_some());
     let found = answer(3, &state.settings);
-    update(&mut state, Action::Answer(found));
+    update(&mut state, Action::News(Update::Answer(found)));
     assert_eq!(state.notice, None, "this one only fills the time until the next answer");
 }
 
