@@ -18,6 +18,7 @@ pub use self::{
     survey::{Defect, DefectKind, Spot, Survey, survey},
 };
 
+pub(crate) mod by_vertex;
 mod canonical;
 pub(crate) mod halfedge;
 mod read;

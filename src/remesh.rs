@@ -24,7 +24,10 @@ pub mod quality;
 
 use std::ops::RangeInclusive;
 
-use crate::{mesh::Mesh, watch::Watch};
+use crate::{
+    mesh::{Mesh, halfedge::AREA_PER_VERTEX},
+    watch::{Pulse, Stopped, Watch},
+};
 
 use self::{input::Input, surface::Surface, work::Work};
 
@@ -104,6 +107,12 @@ pub enum RemeshError {
     },
 }
 
+impl From<Stopped> for RemeshError {
+    fn from(Stopped: Stopped) -> Self {
+        Self::Cancelled
+    }
+}
+
 fn place(at: &[f64; 3]) -> String {
     format!("({}, {}, {})", at[0], at[1], at[2])
 }
@@ -120,21 +129,22 @@ pub fn remesh(mesh: &Mesh, count: usize, watch: &dyn Watch) -> Result<Mesh, Reme
     if !VERTICES.contains(&count) {
         return Err(RemeshError::Count { count });
     }
-    let Input { mesh, faces, ghosts } = input::take(mesh, watch)?;
-    let mut surface = Surface::new(mesh, faces);
-    let area = surface.area();
+    let pulse = &Pulse::new(watch);
+    let Input { mesh, faces, ghosts } = input::take(mesh, pulse)?;
+    let mut surface = Surface::new(mesh, faces, pulse)?;
+    let area = surface.area(pulse)?;
     if !area.is_finite() {
         return Err(RemeshError::NotFinite);
     }
     if area <= 0.0 {
         return Err(RemeshError::NoArea);
     }
-    // The even triangle mesh with edges of length 1 has √3/2 of area per vertex.
-    let length = (area / (0.866_025_403_784_438_6 * count as f64)).sqrt();
-    crease::find(&mut surface, length);
-    surface.set_limits(sizing::find(&surface, length, watch)?);
-    let work = Work::new(&surface, ghosts.clone(), length, watch);
-    let mesh = work.run(count)?;
+    let length = (area / (AREA_PER_VERTEX * count as f64)).sqrt();
+    crease::find(&mut surface, length, pulse)?;
+    surface.set_limits(sizing::find(&surface, length, pulse)?);
+    let work = Work::new(&surface, ghosts.clone(), length, pulse)?;
+    let mesh = work.run(count, watch)?;
     let (points, triangles) = mesh.parts(ghosts);
-    Ok(Mesh::new(points.into_iter().map(|p| [p.x, p.y, p.z]).collect(), triangles).canonical())
+    let result = Mesh::new(points.into_iter().map(|p| [p.x, p.y, p.z]).collect(), triangles);
+    Ok(result.canonical_watched(pulse)?)
 }

@@ -1,7 +1,10 @@
 //! The sum over the triangles.
 
 use super::{Choice, Mass, Operator, matrix::MassMatrix, matrix::Symmetric};
-use crate::watch::{Pulse, Stopped};
+use crate::{
+    mesh::by_vertex::ByVertex,
+    watch::{Pulse, Stopped},
+};
 
 /// Collects the contributions of the triangles to the edges, in the order of the triangles.
 pub(super) struct Joins {
@@ -39,29 +42,15 @@ impl Joins {
     /// When the watch cancels.
     pub(super) fn finish(self, choice: Choice, pulse: &Pulse) -> Result<Symmetric, Stopped> {
         let n = self.area.len();
-        let mut start = vec![0_usize; n + 1];
-        for edge in &self.edges {
-            start[edge.0 as usize + 1] += 1;
-        }
-        for at in 0..n {
-            start[at + 1] += start[at];
-        }
-        pulse.beat(2 * self.edges.len())?;
-        let mut next = start.clone();
-        let mut sorted = vec![(0_u32, 0.0, 0.0); self.edges.len()];
-        for &(low, high, weight, area) in &self.edges {
-            sorted[next[low as usize]] = (high, weight, area);
-            next[low as usize] += 1;
-            pulse.beat(8)?;
-        }
+        let by_low = || self.edges.iter().map(|&(low, high, weight, area)| (low, (high, weight, area)));
+        let mut sorted = ByVertex::new(n, by_low, pulse)?;
         let mut columns = Vec::with_capacity(n + 1);
         columns.push(0);
         let mut rows = Vec::with_capacity(n + self.edges.len() / 2);
         let mut stiffness = Vec::with_capacity(rows.capacity());
         let mut coupling = Vec::with_capacity(rows.capacity());
         let mut diagonal = vec![0.0; n];
-        for column in 0..n {
-            let list = &mut sorted[start[column]..start[column + 1]];
+        for (column, list) in sorted.lists().enumerate() {
             pulse.beat(20 * list.len())?;
             list.sort_by_key(|entry| entry.0);
             rows.push(column as u32);

@@ -1,6 +1,7 @@
 //! One form for all orders in which a file may list the same vertices and triangles, and its hash.
 
 use super::{GeometryHash, Mesh};
+use crate::watch::{Pulse, Stopped, Unwatched};
 
 /// Domain of the geometry hash. Whoever changes the canonical form changes this line.
 const CONTEXT: &str = "eigenselect 2026 canonical triangle mesh v1";
@@ -18,13 +19,23 @@ impl Mesh {
     /// a shape is then computed twice, never taken for another.
     #[must_use]
     pub fn canonical(&self) -> Self {
+        // Nothing stops it.
+        self.canonical_watched(&Pulse::new(&Unwatched)).unwrap_or_default()
+    }
+
+    /// [`Mesh::canonical`] that ends soon after the watch cancels.
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(crate) fn canonical_watched(&self, pulse: &Pulse) -> Result<Self, Stopped> {
         let count = self.vertices.len();
-        let named: Vec<[u32; 3]> = self
-            .triangles
-            .iter()
-            .copied()
-            .filter(|triangle| triangle.iter().all(|&vertex| (vertex as usize) < count))
-            .collect();
+        let mut named = Vec::with_capacity(self.triangles.len());
+        for &triangle in &self.triangles {
+            pulse.beat(5)?;
+            if triangle.iter().all(|&vertex| (vertex as usize) < count) {
+                named.push(triangle);
+            }
+        }
         // Without triangles every vertex is a point of a cloud.
         let mut used = vec![self.triangles.is_empty(); count];
         for vertex in named.iter().flatten() {
@@ -36,26 +47,25 @@ impl Mesh {
             .filter(|&(vertex, _)| used[vertex as usize])
             .map(|(vertex, position)| (position.map(|coordinate| coordinate + 0.0), vertex))
             .collect();
-        order.sort_unstable_by(|(a, i), (b, j)| {
+        pulse.beat(20 * count)?;
+        pulse.sort(&mut order, &|(a, i), (b, j)| {
             a[0].total_cmp(&b[0])
                 .then_with(|| a[1].total_cmp(&b[1]))
                 .then_with(|| a[2].total_cmp(&b[2]))
                 .then_with(|| i.cmp(j))
-        });
+        })?;
         let mut place = vec![0u32; count];
         for (new, &(_, old)) in (0..).zip(&order) {
             place[old as usize] = new;
         }
-        let mut triangles: Vec<[u32; 3]> = named
-            .into_iter()
-            .map(|triangle| {
-                let [a, b, c] = triangle.map(|vertex| place[vertex as usize]);
-                // The least of the three, not the one at the smallest index: a vertex may be named twice.
-                [a, b, c].min([b, c, a]).min([c, a, b])
-            })
-            .collect();
-        triangles.sort_unstable();
-        Self { vertices: order.into_iter().map(|(position, _)| position).collect(), triangles }
+        for triangle in &mut named {
+            let [a, b, c] = triangle.map(|vertex| place[vertex as usize]);
+            // The least of the three, not the one at the smallest index: a vertex may be named twice.
+            *triangle = [a, b, c].min([b, c, a]).min([c, a, b]);
+            pulse.beat(10)?;
+        }
+        pulse.sort(&mut named, &Ord::cmp)?;
+        Ok(Self { vertices: order.into_iter().map(|(position, _)| position).collect(), triangles: named })
     }
 
     /// blake3 of the canonical form: equal for the same shape in another vertex order, face order or file format.

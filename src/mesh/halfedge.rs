@@ -4,7 +4,8 @@
 //! All moves keep the surface a closed oriented 2-manifold of the same genus: they refuse what would not. Edges can be
 //! marked; a mark goes where its edge goes.
 
-use super::vector::V3;
+use super::{by_vertex::ByVertex, vector::V3};
+use crate::watch::{Pulse, Stopped};
 
 mod moves;
 #[cfg(test)]
@@ -26,6 +27,9 @@ pub struct HalfEdges {
     live: usize,
 }
 
+/// The area per vertex of the even triangle mesh with edges of length 1: √3/2.
+pub const AREA_PER_VERTEX: f64 = 0.866_025_403_784_438_6;
+
 /// The next half-edge in the triangle.
 pub const fn next(h: u32) -> u32 {
     if h % 3 == 2 { h - 2 } else { h + 1 }
@@ -38,34 +42,27 @@ pub const fn prev(h: u32) -> u32 {
 
 impl HalfEdges {
     /// The connectivity of a closed oriented manifold surface, no edge marked; none when an edge lacks its other side.
-    pub fn new(points: Vec<V3>, triangles: &[[u32; 3]]) -> Option<Self> {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub fn new(points: Vec<V3>, triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Option<Self>, Stopped> {
         let start = triangles.as_flattened().to_vec();
+        let from_start = || (0_u32..).zip(&start).map(|(h, &a)| (a, h));
+        let fans = ByVertex::new(points.len(), from_start, pulse)?;
         let mut out = vec![GONE; points.len()];
-        // The half-edges from each vertex: those of `a` are `fan[first[a]..first[a + 1]]`.
-        let mut first = vec![0_u32; points.len() + 1];
-        for (h, &a) in (0_u32..).zip(&start) {
-            out[a as usize] = h;
-            first[a as usize + 1] += 1;
-        }
-        for a in 0..points.len() {
-            first[a + 1] += first[a];
-        }
-        let mut free = first.clone();
-        let mut fan = vec![0_u32; start.len()];
-        for (h, &a) in (0_u32..).zip(&start) {
-            fan[free[a as usize] as usize] = h;
-            free[a as usize] += 1;
-        }
         let mut twin = vec![GONE; start.len()];
         for (h, &a) in (0_u32..).zip(&start) {
-            let b = start[next(h) as usize] as usize;
-            let mut back = fan[first[b] as usize..first[b + 1] as usize].iter();
-            let &t = back.find(|&&t| start[next(t) as usize] == a && twin[t as usize] == GONE)?;
+            out[a as usize] = h;
+            let mut back = fans.of(start[next(h) as usize]).iter();
+            let Some(&t) = back.find(|&&t| start[next(t) as usize] == a && twin[t as usize] == GONE) else {
+                return Ok(None);
+            };
             twin[t as usize] = h;
+            pulse.beat(15)?;
         }
         let live = out.iter().filter(|&&h| h != GONE).count();
         let marked = vec![false; start.len()];
-        Some(Self { points, start, twin, marked, out, live })
+        Ok(Some(Self { points, start, twin, marked, out, live }))
     }
 
     /// The number of vertices left.

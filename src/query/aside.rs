@@ -63,15 +63,7 @@ mod tests {
     use std::time::Instant;
 
     use super::*;
-    use crate::watch::Unwatched;
-
-    struct Now;
-
-    impl Watch for Now {
-        fn cancelled(&self) -> bool {
-            true
-        }
-    }
+    use crate::watch::{Unwanted, Unwatched};
 
     #[test]
     fn a_large_file_is_left_alone_when_the_watch_cancels() {
@@ -81,9 +73,9 @@ mod tests {
         std::fs::write(&small, [0; 9]).unwrap();
         let slow = || thread::sleep(Duration::from_secs(20));
         let start = Instant::now();
-        assert_eq!(aside(&large, &Now, slow), Err(Stopped));
+        assert_eq!(aside(&large, &Unwanted, slow), Err(Stopped));
         assert!(start.elapsed() < Duration::from_secs(10));
-        assert_eq!(aside(&small, &Now, || 3), Ok(3));
+        assert_eq!(aside(&small, &Unwanted, || 3), Ok(3));
         assert_eq!(aside(&large, &Unwatched, || 4), Ok(4));
     }
 

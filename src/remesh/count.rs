@@ -3,8 +3,9 @@
 use super::{
     RemeshError,
     shape::SLIVER,
-    work::{Kind, LONG, Work},
+    work::{IDLE, Kind, LONG, MOVE, Work},
 };
+use crate::watch::Stopped;
 
 impl Work<'_> {
     /// Splits or collapses until there are `count` vertices.
@@ -13,8 +14,8 @@ impl Work<'_> {
             let before = self.count();
             // Not all of one pass: their halves may be longer than the next.
             let share = (count - before).min(self.mesh.slots() as usize / 48 + 1);
-            for (length2, h) in self.edges_by_length(share, true) {
-                self.look(h)?;
+            for (length2, h) in self.edges_by_length(share, true)? {
+                self.pulse.beat(MOVE)?;
                 if self.stretch2(h) == length2 {
                     self.try_split(h);
                 }
@@ -25,8 +26,8 @@ impl Work<'_> {
         let (mut longest, mut share) = (LONG, 4_usize);
         while self.count() > count {
             let before = self.count();
-            for (length2, h) in self.edges_by_length(share.saturating_mul(before - count + 16), false) {
-                self.look(h)?;
+            for (length2, h) in self.edges_by_length(share.saturating_mul(before - count + 16), false)? {
+                self.pulse.beat(MOVE)?;
                 if self.count() == count {
                     return Ok(());
                 }
@@ -42,7 +43,7 @@ impl Work<'_> {
                 } else if longest.is_finite() {
                     longest = if longest > 8.0 { f64::INFINITY } else { 1.5 * longest };
                 } else if !self.loose {
-                    self.loosen();
+                    self.loosen()?;
                 } else {
                     return Err(RemeshError::TooFew { wanted: count, least: before });
                 }
@@ -52,14 +53,16 @@ impl Work<'_> {
     }
 
     /// Gives up all creases but the boundary, and the shape of triangles.
-    fn loosen(&mut self) {
+    fn loosen(&mut self) -> Result<(), Stopped> {
         self.loose = true;
         for h in 0..self.mesh.slots() {
+            self.pulse.beat(IDLE)?;
             if self.is_edge(h) && self.mesh.is_marked(h) && !self.is_boundary(h) {
                 self.mesh.mark(h, false);
             }
         }
         for a in 0..self.mesh.vertex_slots() {
+            self.pulse.beat(50)?;
             if self.mesh.has_vertex(a) && !self.is_ghost(a) {
                 let at = a as usize;
                 let crease = self.mesh.around(a).any(|h| self.mesh.is_marked(h));
@@ -74,6 +77,7 @@ impl Work<'_> {
                 }
             }
         }
+        Ok(())
     }
 
     fn is_boundary(&self, h: u32) -> bool {
@@ -81,13 +85,17 @@ impl Work<'_> {
     }
 
     /// The so many longest edges, or shortest, with their squared lengths over those aimed at: these first.
-    fn edges_by_length(&self, share: usize, longest: bool) -> Vec<(f64, u32)> {
+    fn edges_by_length(&self, share: usize, longest: bool) -> Result<Vec<(f64, u32)>, Stopped> {
         // Where a few are wanted, they are sought among those far from the length aimed at.
         let far = if longest { [1.5, 1.0, 0.0] } else { [0.6, 1.0, f64::INFINITY] };
         let mut edges = Vec::new();
         for stretch2 in far {
             edges.clear();
-            for h in (0..self.mesh.slots()).filter(|&h| self.is_edge(h)) {
+            for h in 0..self.mesh.slots() {
+                self.pulse.beat(IDLE)?;
+                if !self.is_edge(h) {
+                    continue;
+                }
                 let limit = stretch2 * self.aim2(h);
                 if (longest && self.length2(h) >= limit) || (!longest && self.length2(h) <= limit) {
                     edges.push((self.stretch2(h), h));
@@ -97,15 +105,16 @@ impl Work<'_> {
                 break;
             }
         }
-        let by_length = |x: &(f64, u32), y: &(f64, u32)| {
-            let order = x.0.total_cmp(&y.0).then(x.1.cmp(&y.1));
-            if longest { order.reverse() } else { order }
+        let order = |x: &(f64, u32), y: &(f64, u32)| {
+            let ascending = x.0.total_cmp(&y.0).then(x.1.cmp(&y.1));
+            if longest { ascending.reverse() } else { ascending }
         };
         if share < edges.len() {
-            edges.select_nth_unstable_by(share, by_length);
+            edges.select_nth_unstable_by(share, order);
+            self.pulse.beat(15 * edges.len())?;
             edges.truncate(share);
         }
-        edges.sort_unstable_by(by_length);
-        edges
+        self.pulse.sort(&mut edges, &order)?;
+        Ok(edges)
     }
 }

@@ -4,9 +4,12 @@
 //! on both of its sides. A thin limb of few triangles has sharp edges too, but turns on beside them; it is round.
 
 use super::surface::Surface;
-use crate::mesh::{
-    halfedge::{HalfEdges, next},
-    vector::V3,
+use crate::{
+    mesh::{
+        halfedge::{HalfEdges, next},
+        vector::V3,
+    },
+    watch::{Pulse, Stopped},
 };
 
 /// Cosine of the angle between the normals from which on an edge is sharp: 45°.
@@ -25,36 +28,48 @@ const SHORT: f64 = 6.0;
 /// Marks the creases of the surface besides its boundary, which is marked already, and tells it the corners.
 ///
 /// `length` is that of the edges to come: what is too short for them is no crease but noise.
-pub(super) fn find(surface: &mut Surface, length: f64) {
-    let sharp: Vec<u32> = (0..surface.mesh.slots())
-        .filter(|&h| surface.mesh.is_edge(h) && !surface.mesh.is_marked(h) && is_crease(surface, h, length))
-        .collect();
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn find(surface: &mut Surface, length: f64, pulse: &Pulse) -> Result<(), Stopped> {
+    let mut sharp = Vec::new();
+    for h in 0..surface.mesh.slots() {
+        pulse.beat(20)?;
+        if surface.mesh.is_edge(h) && !surface.mesh.is_marked(h) && is_crease(surface, h, length, pulse)? {
+            sharp.push(h);
+        }
+    }
     let mesh = &mut surface.mesh;
     for &h in &sharp {
         mesh.mark(h, true);
     }
-    forget_forks(mesh, &sharp);
-    forget_ends(mesh, &sharp, SHORT * length);
-    forget_short(mesh, &sharp, SHORT * length);
-    let corners = (0..mesh.vertex_slots()).map(|a| is_corner(mesh, a)).collect();
-    surface.set_creases(corners);
+    forget_forks(mesh, &sharp, pulse)?;
+    forget_ends(mesh, &sharp, SHORT * length, pulse)?;
+    forget_short(mesh, &sharp, SHORT * length, pulse)?;
+    let mut corners = Vec::with_capacity(mesh.vertex_slots() as usize);
+    for a in 0..mesh.vertex_slots() {
+        pulse.beat(30)?;
+        corners.push(is_corner(mesh, a));
+    }
+    surface.set_creases(corners, pulse)
 }
 
 /// Whether an edge within the surface is sharp, and the surface flat on both sides.
-fn is_crease(surface: &Surface, h: u32, length: f64) -> bool {
+fn is_crease(surface: &Surface, h: u32, length: f64, pulse: &Pulse) -> Result<bool, Stopped> {
     let t = surface.mesh.twin(h);
     if !surface.is_real(h) || !surface.is_real(t) {
-        return false;
+        return Ok(false);
     }
     let (one, two) = (surface.face_normal(h / 3), surface.face_normal(t / 3));
     let (n1, n2) = (one.norm(), two.norm());
     if one.dot(two) >= SHARP * n1 * n2 || n1 <= 0.0 || n2 <= 0.0 {
-        return false;
+        return Ok(false);
     }
+    pulse.beat(2000)?;
     let mesh = &surface.mesh;
     let (p, q) = (mesh.point(mesh.start(h)), mesh.point(mesh.start(next(h))));
     let (middle, along) = (p.lerp(q, 0.5), q - p);
-    [(h, one), (t, two)].into_iter().all(|(side, normal)| {
+    Ok([(h, one), (t, two)].into_iter().all(|(side, normal)| {
         // Into the triangle, at a right angle to the edge.
         let inwards = if side == h { normal.cross(along) } else { along.cross(normal) }.unit();
         [0.5, 1.0].into_iter().all(|share| {
@@ -62,13 +77,14 @@ fn is_crease(surface: &Surface, h: u32, length: f64) -> bool {
             let there: V3 = surface.face_normal(spot.side / 3);
             there.dot(normal) > FLAT * there.norm() * normal.norm()
         })
-    })
+    }))
 }
 
 /// Takes away the mark of the blunter one of two creases that leave a vertex at an acute angle: no even triangle fits
 /// between them.
-fn forget_forks(mesh: &mut HalfEdges, sharp: &[u32]) {
+fn forget_forks(mesh: &mut HalfEdges, sharp: &[u32], pulse: &Pulse) -> Result<(), Stopped> {
     for &h in sharp {
+        pulse.beat(300)?;
         for side in [h, mesh.twin(h)] {
             let a = mesh.start(side);
             let along = |o: u32| (mesh.point(mesh.end(o)) - mesh.point(a)).unit();
@@ -80,6 +96,7 @@ fn forget_forks(mesh: &mut HalfEdges, sharp: &[u32]) {
             }
         }
     }
+    Ok(())
 }
 
 /// Cosine of the dihedral angle's supplement: less, the sharper.
@@ -92,9 +109,10 @@ fn bend(mesh: &HalfEdges, h: u32) -> f64 {
 }
 
 /// Takes away the marks of creases shorter than `least` that end in nothing.
-fn forget_ends(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
+fn forget_ends(mesh: &mut HalfEdges, sharp: &[u32], least: f64, pulse: &Pulse) -> Result<(), Stopped> {
     let degree = |mesh: &HalfEdges, a: u32| mesh.around(a).filter(|&o| mesh.is_marked(o)).count();
     for &h in sharp {
+        pulse.beat(100)?;
         for side in [h, mesh.twin(h)] {
             if !mesh.is_marked(side) || degree(mesh, mesh.start(side)) != 1 {
                 continue;
@@ -102,6 +120,7 @@ fn forget_ends(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
             // From the end to where it meets others.
             let (mut branch, mut sum, mut at) = (vec![side], mesh.length(side), side);
             while sum < least && degree(mesh, mesh.end(at)) == 2 {
+                pulse.beat(50)?;
                 let back = mesh.twin(at);
                 let Some(on) = mesh.around(mesh.end(at)).find(|&o| mesh.is_marked(o) && o != back) else { break };
                 sum += mesh.length(on);
@@ -115,10 +134,11 @@ fn forget_ends(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
             }
         }
     }
+    Ok(())
 }
 
 /// Takes away the marks of the connected pieces of creases that are shorter than `least`.
-fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
+fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64, pulse: &Pulse) -> Result<(), Stopped> {
     let mut seen = vec![false; mesh.vertex_slots() as usize];
     for &h in sharp {
         let seed = mesh.start(h);
@@ -127,6 +147,7 @@ fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
         }
         let (mut open, mut piece, mut sum) = (vec![seed], Vec::new(), 0.0);
         while let Some(a) = open.pop() {
+            pulse.beat(60)?;
             for o in mesh.around(a).filter(|&o| mesh.is_marked(o)) {
                 piece.push(o);
                 sum += 0.5 * mesh.length(o);
@@ -137,6 +158,7 @@ fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
         }
         if sum < least {
             for o in piece {
+                pulse.beat(20)?;
                 // The boundary stays.
                 if sharp.binary_search(&o.min(mesh.twin(o))).is_ok() {
                     mesh.mark(o, false);
@@ -144,6 +166,7 @@ fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64) {
             }
         }
     }
+    Ok(())
 }
 
 fn is_corner(mesh: &HalfEdges, a: u32) -> bool {

@@ -3,9 +3,12 @@
 use super::{
     RemeshError,
     shape::{SLIVER, quality},
-    work::Work,
+    work::{IDLE, Work},
 };
 use crate::mesh::halfedge::prev;
+
+/// What it costs to see whether an edge wants to be flipped, in nanoseconds, about.
+const SIGHT: usize = 40;
 
 impl Work<'_> {
     /// Flips edges whose opposite angles sum to more than π, in so many passes at most.
@@ -13,8 +16,9 @@ impl Work<'_> {
         let mut open = std::mem::take(&mut self.open);
         open.clear();
         for h in 0..self.mesh.slots() {
-            self.look(h)?;
+            self.pulse.beat(IDLE)?;
             if self.mesh.is_edge(h) {
+                self.pulse.beat(SIGHT)?;
                 self.try_flip(h, &mut open);
             }
         }
@@ -22,7 +26,7 @@ impl Work<'_> {
         let (mut from, mut to) = (0, open.len());
         for _ in 1..passes {
             for at in from..to {
-                self.look(at as u32)?;
+                self.pulse.beat(SIGHT)?;
                 self.try_flip(open[at], &mut open);
             }
             (from, to) = (to, open.len());

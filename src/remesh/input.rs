@@ -10,10 +10,11 @@ use super::RemeshError;
 use crate::{
     mesh::{
         Mesh,
+        by_vertex::ByVertex,
         halfedge::HalfEdges,
         vector::{V3, v},
     },
-    watch::Watch,
+    watch::{Pulse, Stopped},
 };
 
 const NONE: u32 = u32::MAX;
@@ -28,38 +29,36 @@ pub(super) struct Input {
 }
 
 /// Checks the mesh and takes it over in its canonical order.
-pub(super) fn take(mesh: &Mesh, watch: &dyn Watch) -> Result<Input, RemeshError> {
+pub(super) fn take(mesh: &Mesh, pulse: &Pulse) -> Result<Input, RemeshError> {
     if mesh.vertices().iter().flatten().any(|coordinate| !coordinate.is_finite()) {
         return Err(RemeshError::NotFinite);
     }
-    let mesh = mesh.canonical();
+    let mesh = mesh.canonical_watched(pulse)?;
     let points: Vec<V3> = mesh.vertices().iter().map(|&[x, y, z]| v(x, y, z)).collect();
     let mut triangles = mesh.triangles().to_vec();
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     if triangles.is_empty() {
         return Err(RemeshError::NoArea);
     }
-    let poll = || if watch.cancelled() { Err(RemeshError::Cancelled) } else { Ok(()) };
-    poll()?;
-    let mut mates = mates(&points, &triangles)?;
-    poll()?;
-    orient(&points, &mut triangles, &mut mates)?;
-    poll()?;
+    pulse.beat(10 * triangles.len())?;
+    let mut mates = mates(&points, &triangles, pulse)?;
+    orient(&points, &mut triangles, &mut mates, pulse)?;
     let faces = triangles.len() as u32;
-    let ghosts = close(&points, &mut triangles, &mates)?;
+    let ghosts = close(&points, &mut triangles, &mates, pulse)?;
     let mut all = points;
     all.resize(ghosts.end as usize, V3::default());
-    let degrees = degrees(all.len(), &triangles);
+    let degrees = degrees(all.len(), &triangles, pulse)?;
     // Every edge has its two sides by now.
-    let Some(mut mesh) = HalfEdges::new(all, &triangles) else { return Err(RemeshError::NoArea) };
-    poll()?;
+    let Some(mut mesh) = HalfEdges::new(all, &triangles, pulse)? else { return Err(RemeshError::NoArea) };
     for a in (0..mesh.vertex_slots()).filter(|&a| mesh.has_vertex(a)) {
+        pulse.beat(30)?;
         if mesh.degree(a) != degrees[a as usize] as usize {
             return Err(RemeshError::Vertex { at: place(mesh.point(a)) });
         }
     }
     for h in 0..mesh.slots() {
         let t = mesh.twin(h);
+        pulse.beat(8)?;
         if mesh.apex(h) == mesh.apex(t) {
             return Err(RemeshError::Doubled { at: place(mesh.point(mesh.start(h))) });
         }
@@ -74,12 +73,13 @@ fn place(p: V3) -> [f64; 3] {
     [p.x, p.y, p.z]
 }
 
-fn degrees(points: usize, triangles: &[[u32; 3]]) -> Vec<u32> {
+fn degrees(points: usize, triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     let mut degrees = vec![0; points];
     for &a in triangles.as_flattened() {
         degrees[a as usize] += 1;
+        pulse.beat(2)?;
     }
-    degrees
+    Ok(degrees)
 }
 
 /// The half-edge from corner `h` to the next of its triangle.
@@ -89,30 +89,23 @@ fn ends(triangles: &[[u32; 3]], h: u32) -> (u32, u32) {
 }
 
 /// For each half-edge the one of the other triangle at its edge, in whatever direction; `NONE` at the boundary.
-fn mates(points: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<u32>, RemeshError> {
+fn mates(points: &[V3], triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32>, RemeshError> {
     let count = 3 * triangles.len() as u32;
     let low = |h: u32| {
         let (a, b) = ends(triangles, h);
         (a.min(b), a.max(b))
     };
-    let mut first = vec![0_u32; points.len() + 1];
-    for h in 0..count {
-        first[low(h).0 as usize + 1] += 1;
-    }
-    for a in 0..points.len() {
-        first[a + 1] += first[a];
-    }
-    let mut free = first.clone();
-    let mut fan = vec![(0, 0); count as usize];
-    for h in 0..count {
-        let (a, b) = low(h);
-        fan[free[a as usize] as usize] = (b, h);
-        free[a as usize] += 1;
-    }
+    let by_low = || {
+        (0..count).map(|h| {
+            let (a, b) = low(h);
+            (a, (b, h))
+        })
+    };
+    let mut fans = ByVertex::new(points.len(), by_low, pulse)?;
     let mut mates = vec![NONE; count as usize];
-    for (a, range) in first.windows(2).enumerate() {
-        let edges = &mut fan[range[0] as usize..range[1] as usize];
+    for (a, edges) in fans.lists().enumerate() {
         edges.sort_unstable();
+        pulse.beat(30 * edges.len())?;
         for edge in edges.chunk_by(|x, y| x.0 == y.0) {
             match *edge {
                 [_] => {}
@@ -132,7 +125,7 @@ fn mates(points: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<u32>, RemeshError>
 
 /// Turns triangles round so that all of a component agree with its first. Of `mates`, only which are `NONE` holds
 /// after.
-fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32]) -> Result<(), RemeshError> {
+fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32], pulse: &Pulse) -> Result<(), RemeshError> {
     let mut turned: Vec<Option<bool>> = vec![None; triangles.len()];
     let mut open = Vec::new();
     for seed in 0..triangles.len() {
@@ -143,6 +136,7 @@ fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32]) -> Resul
         open.push(seed as u32);
         while let Some(face) = open.pop() {
             let mine = turned[face as usize] == Some(true);
+            pulse.beat(40)?;
             for h in 3 * face..3 * face + 3 {
                 let mate = mates[h as usize];
                 if mate == NONE {
@@ -175,13 +169,19 @@ fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32]) -> Resul
 }
 
 /// Adds a ghost and its triangles for every loop of the boundary; gives the ghosts.
-fn close(points: &[V3], triangles: &mut Vec<[u32; 3]>, mates: &[u32]) -> Result<Range<u32>, RemeshError> {
+fn close(
+    points: &[V3],
+    triangles: &mut Vec<[u32; 3]>,
+    mates: &[u32],
+    pulse: &Pulse,
+) -> Result<Range<u32>, RemeshError> {
     let first = points.len() as u32;
     // The next vertex along the boundary.
     let mut after = vec![NONE; points.len()];
     let faces = triangles.len();
     for face in 0..faces {
         let [a, b, c] = triangles[face];
+        pulse.beat(6)?;
         for (corner, (x, y)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
             let free = mates[3 * face + corner] == NONE;
             if free && std::mem::replace(&mut after[x as usize], y) != NONE {
@@ -198,6 +198,7 @@ fn close(points: &[V3], triangles: &mut Vec<[u32; 3]>, mates: &[u32]) -> Result<
         while after[a as usize] != NONE {
             let b = std::mem::replace(&mut after[a as usize], NONE);
             triangles.push([b, a, ghost]);
+            pulse.beat(5)?;
             a = b;
         }
         ghost += 1;

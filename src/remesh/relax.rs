@@ -2,9 +2,9 @@
 
 use super::{
     RemeshError,
-    work::{Kind, Work, distance2},
+    work::{IDLE, Kind, MOVE, Work, distance2},
 };
-use crate::mesh::vector::V3;
+use crate::{mesh::vector::V3, watch::Stopped};
 
 /// Ways that are not worth going, in squares of the length aimed at.
 const STILL: f64 = 4e-4;
@@ -22,8 +22,9 @@ impl Work<'_> {
             1.0 / (share * share * share * share)
         };
         let weights: Vec<f64> = (0..self.mesh.vertex_slots()).map(weight).collect();
+        self.pulse.beat(5 * weights.len())?;
         for a in 0..self.mesh.vertex_slots() {
-            self.look(a)?;
+            self.pulse.beat(MOVE)?;
             if !self.mesh.has_vertex(a) || self.is_ghost(a) {
                 continue;
             }
@@ -59,19 +60,23 @@ impl Work<'_> {
     /// that is finer than the triangles it is more, and makes what is left of the relief stronger. It is found by two
     /// secants, and bounded where more than relief was lost.
     pub(super) fn balance(&mut self) -> Result<(), RemeshError> {
-        let wanted = self.surface.area();
+        let wanted = self.surface.area(self.pulse)?;
         let shifts = self.shifts()?;
-        let area = |share: f64| -> f64 {
+        let area = |share: f64| -> Result<f64, Stopped> {
             let at = |a: u32| self.mesh.point(a) + shifts[a as usize] * share;
-            let triangles = self.mesh.triangles().filter(|t| !t.iter().any(|&a| self.is_ghost(a)));
-            triangles.map(|[a, b, c]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm()).sum()
+            let mut sum = 0.0;
+            for [a, b, c] in self.mesh.triangles().filter(|t| !t.iter().any(|&a| self.is_ghost(a))) {
+                sum += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+                self.pulse.beat(25)?;
+            }
+            Ok(sum)
         };
-        let (now, then) = (area(0.0), area(SHARE));
+        let (now, then) = (area(0.0)?, area(SHARE)?);
         let secant = |share: f64, then: f64| {
             if then > now { (share * (wanted - now) / (then - now)).clamp(0.0, GREATEST) } else { 0.0 }
         };
         let first = secant(SHARE, then);
-        let share = secant(first, area(first));
+        let share = secant(first, area(first)?);
         for (point, shift) in self.mesh.points.iter_mut().zip(shifts) {
             *point = *point + shift * share;
         }
@@ -79,16 +84,17 @@ impl Work<'_> {
     }
 
     /// For each free vertex the mean gap between the triangles around it and the surface, along its normal.
-    fn shifts(&self) -> Result<Vec<V3>, RemeshError> {
+    fn shifts(&self) -> Result<Vec<V3>, Stopped> {
         let slots = self.mesh.vertex_slots() as usize;
         let (mut gaps, mut weights) = (vec![0.0; slots], vec![0.0; slots]);
         for h in (0..self.mesh.slots()).step_by(3) {
-            self.look(h / 3)?;
+            self.pulse.beat(IDLE)?;
             let corners = [h, h + 1, h + 2].map(|side| self.mesh.start(side));
             if !self.mesh.has(h) || corners.iter().any(|&a| self.is_ghost(a)) {
                 continue;
             }
             let [p, q, r] = corners.map(|a| self.mesh.point(a));
+            self.pulse.beat(MOVE)?;
             let normal = (q - p).cross(r - p);
             let area = normal.norm();
             let centre = (p + q + r) * (1.0 / 3.0);

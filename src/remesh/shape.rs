@@ -2,7 +2,7 @@
 
 use super::{
     RemeshError,
-    work::{Kind, Work},
+    work::{IDLE, Kind, MOVE, Work},
 };
 use crate::mesh::vector::V3;
 
@@ -66,11 +66,12 @@ impl Work<'_> {
         for _ in 0..MENDS {
             left = 0;
             for h in (0..self.mesh.slots()).step_by(3) {
-                self.look(h / 3)?;
+                self.pulse.beat(3 * IDLE)?;
                 if !self.mesh.has(h) || !self.is_bad(h) {
                     continue;
                 }
                 left += 1;
+                self.pulse.beat(3 * MOVE)?;
                 let mut sides = [h, h + 1, h + 2].map(|side| (self.length2(side), side));
                 sides.sort_unstable_by(|x, y| x.0.total_cmp(&y.0));
                 if sides.into_iter().any(|(_, side)| self.try_collapse(side, 2.0, f64::INFINITY)) {

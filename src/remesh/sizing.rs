@@ -7,13 +7,13 @@
 //! A limb is as thin however near one looks, until one looks nearer than its radius; the rim of a sheet stays sharp.
 //! The two are told apart by where the normals of the disc point: all around, or to both sides of a plane.
 
-use super::{RemeshError, surface::Surface};
+use super::surface::Surface;
 use crate::{
     mesh::{
         halfedge::next,
         vector::{V3, v},
     },
-    watch::Watch,
+    watch::{Pulse, Stopped},
 };
 
 /// The share of the area that may go: six edges around a tube.
@@ -39,19 +39,18 @@ const FLAT: f64 = 2.0;
 const BEYOND: f64 = 0.5;
 /// Discs of more triangles than this are looked at in part.
 const MOST: usize = 96;
-/// Vertices between two looks at the watch.
-const LOOK: u32 = 1024;
 
 /// For each vertex of the surface the greatest length of an edge there; `length` is the usual one.
-pub(super) fn find(surface: &Surface, length: f64, watch: &dyn Watch) -> Result<Vec<f64>, RemeshError> {
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn find(surface: &Surface, length: f64, pulse: &Pulse) -> Result<Vec<f64>, Stopped> {
     let mesh = &surface.mesh;
-    let mut disc = Disc::new(surface);
+    let mut disc = Disc::new(surface, pulse)?;
     let none = FREE * length;
     let mut limits = vec![f64::INFINITY; mesh.vertex_slots() as usize];
     for a in 0..mesh.vertex_slots() {
-        if a.is_multiple_of(LOOK) && watch.cancelled() {
-            return Err(RemeshError::Cancelled);
-        }
+        pulse.beat(50)?;
         // Edges of creases lie along them.
         if !mesh.has_vertex(a) || mesh.around(a).any(|h| mesh.is_marked(h) || !surface.is_real(h)) {
             continue;
@@ -60,12 +59,14 @@ pub(super) fn find(surface: &Surface, length: f64, watch: &dyn Watch) -> Result<
         if mesh.around(a).any(|h| is_flat(mesh.end(h)) && mesh.length(h) < 0.5 * length) {
             continue;
         }
+        pulse.beat(1000)?;
         let mut radius = length;
         let (mut loss, round) = disc.loss(a, radius);
         let mut least = if round > ROUND { LEAST } else { RIM };
         while loss > THIN && radius > least * length {
             radius *= 0.5;
             loss = disc.loss(a, radius).0;
+            pulse.beat(1000)?;
         }
         if loss > SHARP {
             least = RIM;
@@ -75,18 +76,19 @@ pub(super) fn find(surface: &Surface, length: f64, watch: &dyn Watch) -> Result<
     for limit in &mut limits {
         *limit = limit.min(none);
     }
-    grade(surface, &mut limits, none);
+    grade(surface, &mut limits, none, pulse)?;
     Ok(limits)
 }
 
 /// Sees to it that limits grow slowly from where they are short.
-fn grade(surface: &Surface, limits: &mut [f64], none: f64) {
+fn grade(surface: &Surface, limits: &mut [f64], none: f64, pulse: &Pulse) -> Result<(), Stopped> {
     let mesh = &surface.mesh;
     let mut open: Vec<u32> = (0..mesh.vertex_slots()).filter(|&a| limits[a as usize] < none).collect();
     let mut is_open: Vec<bool> = limits.iter().map(|&limit| limit < none).collect();
     let mut at = 0;
     while let Some(&a) = open.get(at) {
         at += 1;
+        pulse.beat(40)?;
         is_open[a as usize] = false;
         let limit = limits[a as usize];
         for h in mesh.around(a).filter(|&h| surface.is_real(h) || surface.is_real(mesh.twin(h))) {
@@ -103,6 +105,7 @@ fn grade(surface: &Surface, limits: &mut [f64], none: f64) {
             }
         }
     }
+    Ok(())
 }
 
 /// The surface around one vertex after the other.
@@ -117,13 +120,15 @@ struct Disc<'a> {
 }
 
 impl<'a> Disc<'a> {
-    fn new(surface: &'a Surface) -> Self {
+    fn new(surface: &'a Surface, pulse: &Pulse) -> Result<Self, Stopped> {
         let count = surface.face_count();
-        let faces = (0..count).map(|face| {
+        let mut faces = Vec::with_capacity(count as usize);
+        for face in 0..count {
             let normal = surface.face_normal(face) * 0.5;
-            (normal, normal.norm())
-        });
-        Self { surface, faces: faces.collect(), met: vec![0; count as usize], turn: 0, open: Vec::new() }
+            faces.push((normal, normal.norm()));
+            pulse.beat(20)?;
+        }
+        Ok(Self { surface, faces, met: vec![0; count as usize], turn: 0, open: Vec::new() })
     }
 
     /// The share of the area within `radius` of the vertex that is gone when the vertex stands for all of it, and

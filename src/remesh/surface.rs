@@ -1,9 +1,12 @@
 //! The input's surface: the nearest point near by, found by walking from triangle to triangle, and the way along its
 //! creases.
 
-use crate::mesh::{
-    halfedge::{HalfEdges, next},
-    vector::V3,
+use crate::{
+    mesh::{
+        halfedge::{HalfEdges, next},
+        vector::V3,
+    },
+    watch::{Pulse, Stopped},
 };
 
 /// The length of normals on creases: the surface has several there, so that its normals beside say more of a triangle.
@@ -43,37 +46,51 @@ struct Near {
 
 impl Surface {
     /// The surface of a mesh that has `faces` triangles and those of its ghosts after them; without creases yet.
-    pub(super) fn new(mesh: HalfEdges, faces: u32) -> Self {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn new(mesh: HalfEdges, faces: u32, pulse: &Pulse) -> Result<Self, Stopped> {
         let count = mesh.vertex_slots() as usize;
         let mut surface =
             Self { mesh, faces, normals: Vec::new(), corners: vec![false; count], limits: vec![0.0; count] };
         let mut normals = vec![V3::default(); count];
         for face in 0..faces {
             let normal = surface.face_normal(face);
+            pulse.beat(20)?;
             for h in 3 * face..3 * face + 3 {
                 let at = &mut normals[surface.mesh.start(h) as usize];
                 *at = *at + normal;
             }
         }
-        surface.normals = normals.into_iter().map(V3::unit).collect();
-        surface
+        for normal in &mut normals {
+            *normal = normal.unit();
+            pulse.beat(10)?;
+        }
+        surface.normals = normals;
+        Ok(surface)
     }
 
     /// The sum of the triangles' areas.
-    pub(super) fn area(&self) -> f64 {
-        (0..self.faces).map(|face| 0.5 * self.face_normal(face).norm()).sum()
+    pub(super) fn area(&self, pulse: &Pulse) -> Result<f64, Stopped> {
+        let mut sum = 0.0;
+        for face in 0..self.faces {
+            sum += 0.5 * self.face_normal(face).norm();
+            pulse.beat(15)?;
+        }
+        Ok(sum)
     }
 
     /// A third of the area of the triangles around each vertex.
-    pub(super) fn areas(&self) -> Vec<f64> {
+    pub(super) fn areas(&self, pulse: &Pulse) -> Result<Vec<f64>, Stopped> {
         let mut areas = vec![0.0; self.mesh.vertex_slots() as usize];
         for face in 0..self.faces {
             let share = self.face_normal(face).norm() / 6.0;
+            pulse.beat(20)?;
             for h in 3 * face..3 * face + 3 {
                 areas[self.mesh.start(h) as usize] += share;
             }
         }
-        areas
+        Ok(areas)
     }
 
     /// The normal of a triangle, as long as twice its area.
@@ -111,13 +128,15 @@ impl Surface {
     }
 
     /// Takes over the marks of the mesh as creases.
-    pub(super) fn set_creases(&mut self, corners: Vec<bool>) {
+    pub(super) fn set_creases(&mut self, corners: Vec<bool>, pulse: &Pulse) -> Result<(), Stopped> {
         self.corners = corners;
         for h in 0..self.mesh.slots() {
+            pulse.beat(2)?;
             if self.mesh.is_marked(h) {
                 self.normals[self.mesh.start(h) as usize] = V3::default();
             }
         }
+        Ok(())
     }
 
     pub(super) fn is_real(&self, h: u32) -> bool {

@@ -1,14 +1,11 @@
 //! What re-meshing promises, on shapes that can be written down.
 
-use std::{
-    f64::consts::TAU,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 
 use super::{quality::Topology, *};
-use crate::watch::Unwatched;
+use crate::watch::{Patience, Unwatched};
 
 /// A grid of m × n vertices, closed in the first direction, and in the second where `both`.
 fn grid(m: u32, n: u32, both: bool, at: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
@@ -227,52 +224,25 @@ fn counts_that_cannot_be_had_are_refused() {
     remeshed(&mesh, least.max(40));
 }
 
-/// Cancels at a look, and counts the looks.
-struct After(AtomicUsize);
-
-impl Watch for After {
-    fn cancelled(&self) -> bool {
-        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
-    }
-}
-
 #[test]
 fn it_can_be_cancelled_at_any_time() {
-    let mesh = torus(30, 20);
-    for looks in [0, 1, 2, 5, 20, 60] {
-        assert_eq!(remesh(&mesh, 2000, &After(AtomicUsize::new(looks))), Err(RemeshError::Cancelled), "{looks}");
-    }
-}
-
-/// Counts the looks, and says yes from one of them on.
-struct From {
-    looks: AtomicUsize,
-    yes: usize,
-}
-
-impl Watch for From {
-    fn cancelled(&self) -> bool {
-        self.looks.fetch_add(1, Ordering::Relaxed) >= self.yes
-    }
-}
-
-#[test]
-fn cancelled_at_a_random_moment_it_ends_with_that_look() {
     let mesh = limb(0.05);
-    let looks = |yes: usize| {
-        let watch = From { looks: AtomicUsize::new(0), yes };
-        let result = remesh(&mesh, 5000, &watch);
-        (result, watch.looks.into_inner())
+    let looks = |granted: usize| {
+        let watch = Patience::of(granted);
+        let result = remesh(&mesh, 30_000, &watch);
+        (result, watch.looks())
     };
     let (result, all) = looks(usize::MAX);
-    assert_eq!(result.unwrap().vertices().len(), 5000);
-    // A few hundred looks in some 20 ms.
-    assert!(all > 100, "{all}");
+    assert_eq!(result.unwrap().vertices().len(), 30_000);
+    // One in about two milliseconds.
+    assert!(all > 50, "{all}");
     let mut state = 7_u64;
-    for _ in 0..40 {
+    let random = (0..16).map(|_| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let yes = (state >> 33) as usize % all;
-        assert_eq!(looks(yes), (Err(RemeshError::Cancelled), yes + 1));
+        (state >> 33) as usize % all
+    });
+    for granted in [0, 1, all - 1].into_iter().chain(random) {
+        assert_eq!(looks(granted), (Err(RemeshError::Cancelled), granted + 1));
     }
 }
 

@@ -4,8 +4,11 @@ use std::ops::Range;
 
 use super::{RemeshError, shape::SLIVER, surface::Surface};
 use crate::{
-    mesh::{halfedge::HalfEdges, vector::V3},
-    watch::Watch,
+    mesh::{
+        halfedge::{AREA_PER_VERTEX, HalfEdges},
+        vector::V3,
+    },
+    watch::{Pulse, Stopped, Watch},
 };
 
 /// Rounds of split, collapse, flip and relax.
@@ -24,8 +27,10 @@ const MOST: f64 = 1.3;
 /// Edges longer than this are split, shorter than that collapsed, in lengths aimed at.
 pub(super) const LONG: f64 = 4.0 / 3.0;
 const SHORT: f64 = 0.8;
-/// Units of work between two looks at the watch.
-const LOOK: u32 = 1024;
+
+/// What it costs to look at a half-edge that stays as it is, and to try a move, in nanoseconds, about.
+pub(super) const IDLE: usize = 10;
+pub(super) const MOVE: usize = 500;
 
 /// What a vertex may do: less, the greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -60,7 +65,7 @@ pub(super) struct Work<'a> {
     pub(super) loose: bool,
     /// Edges to be looked at, for reuse.
     pub(super) open: Vec<u32>,
-    pub(super) watch: &'a dyn Watch,
+    pub(super) pulse: &'a Pulse<'a>,
 }
 
 pub(super) fn distance2(p: V3, q: V3) -> f64 {
@@ -69,12 +74,20 @@ pub(super) fn distance2(p: V3, q: V3) -> f64 {
 }
 
 impl<'a> Work<'a> {
-    pub(super) fn new(surface: &'a Surface, ghosts: Range<u32>, length: f64, watch: &'a dyn Watch) -> Self {
+    pub(super) fn new(
+        surface: &'a Surface,
+        ghosts: Range<u32>,
+        length: f64,
+        pulse: &'a Pulse<'a>,
+    ) -> Result<Self, Stopped> {
         let mesh = surface.mesh.clone();
         let slots = mesh.vertex_slots();
         let mut kinds = Vec::with_capacity(slots as usize);
         let mut sides = Vec::with_capacity(slots as usize);
+        let mut normals = Vec::with_capacity(slots as usize);
+        pulse.beat(5 * surface.mesh.slots() as usize)?;
         for a in 0..slots {
+            pulse.beat(60)?;
             let crease = mesh.has_vertex(a).then(|| surface.creases_at(a).next()).flatten();
             let (kind, side) = match crease {
                 Some(_) if surface.is_corner(a) => (Kind::Corner, surface.side_at(a)),
@@ -83,10 +96,10 @@ impl<'a> Work<'a> {
             };
             kinds.push(kind);
             sides.push(side);
+            normals.push(surface.normal(a));
         }
-        let normals = (0..slots).map(|a| surface.normal(a)).collect();
         let limits = (0..slots).map(|a| surface.limit(a)).collect();
-        Self {
+        Ok(Self {
             surface,
             mesh,
             ghosts,
@@ -96,26 +109,26 @@ impl<'a> Work<'a> {
             limits,
             length,
             least: 0.0,
-            areas: surface.areas(),
+            areas: surface.areas(pulse)?,
             loose: false,
             open: Vec::new(),
-            watch,
-        }
+            pulse,
+        })
     }
 
     /// Does the whole work.
-    pub(super) fn run(mut self, count: usize) -> Result<HalfEdges, RemeshError> {
-        self.fit(count);
+    pub(super) fn run(mut self, count: usize, watch: &dyn Watch) -> Result<HalfEdges, RemeshError> {
+        self.fit(count)?;
         // A small mesh costs little, and its shape depends more on each vertex.
         let more = (SMALL / count).min(3);
         let (rounds, finish) = (ROUNDS + more, FINISH + more);
         let total = rounds + finish + 1;
-        self.watch.progress(0, total);
+        watch.progress(0, total);
         if self.count() > count {
             self.collapse()?;
         }
         // The longest first, so that halves stay near to the shape of the whole.
-        let mut longest = self.longest();
+        let mut longest = self.longest()?;
         while longest > LONG {
             longest *= 0.6;
             self.split(longest.max(LONG))?;
@@ -129,7 +142,7 @@ impl<'a> Work<'a> {
             // As if the vertices were spread evenly; creases and thin parts make it differ.
             let ratio = (self.count() as f64 / count as f64).clamp(0.5, 2.0);
             self.length *= ratio.sqrt();
-            self.watch.progress(round + 1, total);
+            watch.progress(round + 1, total);
         }
         self.flip(4)?;
         for round in 0..finish + EXTRA {
@@ -140,17 +153,13 @@ impl<'a> Work<'a> {
             self.reach(count)?;
             self.flip(4)?;
             self.relax()?;
-            self.watch.progress(rounds + round.min(finish - 1) + 1, total);
+            watch.progress(rounds + round.min(finish - 1) + 1, total);
         }
         self.reach(count)?;
         self.flip(4)?;
         self.balance()?;
-        self.watch.progress(total, total);
+        watch.progress(total, total);
         Ok(self.mesh)
-    }
-
-    pub(super) fn look(&self, at: u32) -> Result<(), RemeshError> {
-        if at.is_multiple_of(LOOK) && self.watch.cancelled() { Err(RemeshError::Cancelled) } else { Ok(()) }
     }
 
     /// The number of vertices, without ghosts.
@@ -193,45 +202,54 @@ impl<'a> Work<'a> {
 
     /// Chooses the usual length for `count` vertices. Where the short edges of thin parts would make it much longer,
     /// they get longer too.
-    fn fit(&mut self, count: usize) {
+    fn fit(&mut self, count: usize) -> Result<(), Stopped> {
         let even = self.length;
         self.least = 0.0;
         loop {
             self.length = even;
             for _ in 0..4 {
-                self.length *= (self.need(self.length) / (FILL * count as f64)).sqrt();
+                self.length *= (self.need(self.length)? / (FILL * count as f64)).sqrt();
             }
             if self.length <= MOST * even {
-                break;
+                return Ok(());
             }
             self.least = (1.25 * self.least).max(0.1 * even);
         }
     }
 
     /// How many vertices an even mesh has whose edges are `length` long where they may be.
-    fn need(&self, length: f64) -> f64 {
+    fn need(&self, length: f64) -> Result<f64, Stopped> {
         let surface = self.surface;
-        let share = |(a, area): (u32, &f64)| {
+        let mut sum = 0.0;
+        for (a, area) in (0..).zip(&self.areas) {
             let size = surface.limit(a).max(self.least).min(length);
-            area / (size * size)
-        };
-        (0..).zip(&self.areas).map(share).sum::<f64>() / 0.866_025_403_784_438_6
+            sum += area / (size * size);
+            self.pulse.beat(5)?;
+        }
+        Ok(sum / AREA_PER_VERTEX)
     }
 
-    fn longest(&self) -> f64 {
-        let lengths = (0..self.mesh.slots()).filter(|&h| self.is_edge(h)).map(|h| self.stretch2(h));
-        lengths.fold(0.0, f64::max).sqrt()
+    fn longest(&self) -> Result<f64, Stopped> {
+        let mut longest2 = 0.0_f64;
+        for h in 0..self.mesh.slots() {
+            self.pulse.beat(IDLE)?;
+            if self.is_edge(h) {
+                longest2 = longest2.max(self.stretch2(h));
+            }
+        }
+        Ok(longest2.sqrt())
     }
 
     /// Splits the edges that are longer than `longest`, and what is left of them.
     fn split(&mut self, longest: f64) -> Result<(), RemeshError> {
         let longest2 = longest * longest;
         // A few more than an even mesh of such edges has: where the surface is folded, edges may grow by splits.
-        let most = self.count() + (2.0 * self.need(self.length) / longest2) as usize;
+        let most = self.count() + (2.0 * self.need(self.length)? / longest2) as usize;
         // A split moves edges to new slots at the end: they are not looked at until the next pass.
         for h in 0..self.mesh.slots() {
-            self.look(h)?;
+            self.pulse.beat(IDLE)?;
             if self.is_edge(h) && self.length2(h) > longest2 * self.aim2(h) && self.count() < most {
+                self.pulse.beat(MOVE)?;
                 self.try_split(h);
             }
         }
@@ -242,8 +260,9 @@ impl<'a> Work<'a> {
     fn collapse(&mut self) -> Result<(), RemeshError> {
         let shortest2 = SHORT * SHORT;
         for h in 0..self.mesh.slots() {
-            self.look(h)?;
+            self.pulse.beat(IDLE)?;
             if self.is_edge(h) && self.length2(h) < shortest2 * self.aim2(h) {
+                self.pulse.beat(MOVE)?;
                 self.try_collapse(h, LONG, SLIVER);
             }
         }

@@ -1,11 +1,9 @@
 //! The solver as a whole, on shapes whose spectra are known.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use super::{shapes, *};
 use crate::{
     laplacian::{Mass, Operator, assemble},
-    watch::{Pulse, Unwatched},
+    watch::{Patience, Pulse, Unwatched},
 };
 
 pub(super) const FEM: Choice = Choice::new(Operator::Fem, Mass::Consistent);
@@ -170,17 +168,6 @@ fn more_eigenvalues_are_the_same_ones_and_further_ones() {
     }
 }
 
-/// Cancels for good at the n-th question.
-pub(super) struct Impatient {
-    pub left: AtomicUsize,
-}
-
-impl Watch for Impatient {
-    fn cancelled(&self) -> bool {
-        self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
-    }
-}
-
 #[test]
 fn what_a_cancelled_run_has_finished_is_kept_and_nothing_else_changes() {
     let mesh = potato(4);
@@ -189,7 +176,7 @@ fn what_a_cancelled_run_has_finished_is_kept_and_nothing_else_changes() {
     let mut cancelled = 0;
     let mut patience = 3;
     loop {
-        let watch = Impatient { left: AtomicUsize::new(patience) };
+        let watch = Patience::of(patience);
         match solve(&mesh, FEM, 300, &kept, &watch) {
             Ok(spectrum) => {
                 assert!(spectrum == direct);

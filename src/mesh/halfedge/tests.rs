@@ -1,7 +1,11 @@
 //! What connectivity and moves promise, on a torus that is shaken.
 
 use super::*;
-use crate::mesh::vector::v;
+use crate::{mesh::vector::v, watch::Unwatched};
+
+fn made(points: Vec<V3>, triangles: &[[u32; 3]]) -> Option<HalfEdges> {
+    HalfEdges::new(points, triangles, &Pulse::new(&Unwatched)).unwrap()
+}
 
 /// A torus of m × n vertices, each square cut in two.
 fn torus(m: u32, n: u32) -> HalfEdges {
@@ -17,7 +21,7 @@ fn torus(m: u32, n: u32) -> HalfEdges {
             triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
         }
     }
-    HalfEdges::new(points, &triangles).unwrap()
+    made(points, &triangles).unwrap()
 }
 
 fn ring() -> HalfEdges {
@@ -33,7 +37,7 @@ fn spindle(corners: u32) -> HalfEdges {
     let points = rim.chain([v(0.0, 0.0, 1.0), v(0.0, 0.0, -1.0)]).collect();
     let sides = (0..corners).map(|at| (at, (at + 1) % corners));
     let triangles: Vec<_> = sides.flat_map(|(a, b)| [[a, b, corners], [b, a, corners + 1]]).collect();
-    HalfEdges::new(points, &triangles).unwrap()
+    made(points, &triangles).unwrap()
 }
 
 /// The half-edge from `a` to `b`.
@@ -152,7 +156,7 @@ fn random_moves_keep_a_torus() {
     assert!(moves.iter().all(|&count| count > 100), "{moves:?}");
     let (points, triangles) = mesh.parts(0..0);
     assert_eq!(points.len(), mesh.vertex_count());
-    assert_sound(&HalfEdges::new(points, &triangles).unwrap());
+    assert_sound(&made(points, &triangles).unwrap());
 }
 
 #[test]
@@ -255,9 +259,9 @@ fn marks_go_where_their_edges_go() {
 
 #[test]
 fn open_surfaces_are_refused() {
-    assert!(HalfEdges::new(vec![V3::default(); 3], &[[0, 1, 2]]).is_none());
+    assert!(made(vec![V3::default(); 3], &[[0, 1, 2]]).is_none());
     // Each edge has another, but in the same direction.
-    assert!(HalfEdges::new(vec![V3::default(); 3], &[[0, 1, 2], [0, 1, 2]]).is_none());
+    assert!(made(vec![V3::default(); 3], &[[0, 1, 2], [0, 1, 2]]).is_none());
 }
 
 #[test]

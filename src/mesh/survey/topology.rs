@@ -1,6 +1,10 @@
 //! How triangles hang together.
 
 use super::{Defect, DefectKind, Spot};
+use crate::{
+    mesh::by_vertex::ByVertex,
+    watch::{Pulse, Unwatched},
+};
 
 /// What the topology of the sound triangles is.
 pub(super) struct Topology {
@@ -110,28 +114,16 @@ fn sides(vertices: usize, sound: &[(u32, [u32; 3])]) -> Vec<Side> {
             [(0, a, b), (1, b, c), (2, c, a)].map(|(i, from, to)| {
                 let ascending = from < to;
                 let edge = if ascending { (from, to) } else { (to, from) };
-                Side { edge, corner: 3 * place + i, ascending }
+                (edge.0, Side { edge, corner: 3 * place + i, ascending })
             })
         })
     };
-    let mut ends = vec![0usize; vertices + 1];
-    for side in all() {
-        ends[side.edge.0 as usize + 1] += 1;
-    }
-    for vertex in 0..vertices {
-        ends[vertex + 1] += ends[vertex];
-    }
-    let mut sides = vec![Side { edge: (0, 0), corner: 0, ascending: false }; 3 * sound.len()];
-    // From here on, where the next side of each vertex goes; at last, where its sides end.
-    for side in all() {
-        let next = &mut ends[side.edge.0 as usize];
-        sides[*next] = side;
-        *next += 1;
-    }
-    for of_vertex in sides.chunk_by_mut(|a, b| a.edge.0 == b.edge.0) {
+    // Nothing stops it.
+    let Ok(mut sides) = ByVertex::new(vertices, all, &Pulse::new(&Unwatched)) else { return Vec::new() };
+    for of_vertex in sides.lists() {
         of_vertex.sort_unstable_by_key(|side| (side.edge.1, side.corner));
     }
-    sides
+    sides.into_items()
 }
 
 /// Into how many connected pieces edges fall.

@@ -9,7 +9,10 @@ use super::random::Random;
 use super::sizing::{Tessellation, even_length, sizes};
 use super::solid::Solid;
 use super::vector::V3;
-use crate::mesh::halfedge::HalfEdges;
+use crate::{
+    mesh::halfedge::HalfEdges,
+    watch::{Pulse, Unwatched},
+};
 
 /// Rounds after which the mesh has settled, and at most.
 const ROUNDS: (usize, usize) = (7, 16);
@@ -34,7 +37,7 @@ pub struct Remesher<'a> {
 impl<'a> Remesher<'a> {
     /// Takes the surface of `solid` as polygonised on a grid of `step`; none when it is not closed.
     pub fn new(solid: &'a Solid, surface: Surface, step: f64) -> Option<Self> {
-        let mesh = HalfEdges::new(surface.points, &surface.triangles)?;
+        let mesh = HalfEdges::new(surface.points, &surface.triangles, &Pulse::new(&Unwatched)).ok()??;
         let mut normals = vec![V3::default(); mesh.vertex_slots() as usize];
         for [a, b, c] in mesh.triangles() {
             let [p, q, r] = [a, b, c].map(|x| mesh.point(x));
@@ -272,6 +275,11 @@ mod tests {
     use super::super::vector::{Frame, v};
     use super::*;
 
+    fn topology(surface: Surface) -> (usize, i64) {
+        let mesh = HalfEdges::new(surface.points, &surface.triangles, &Pulse::new(&Unwatched));
+        mesh.unwrap().unwrap().topology()
+    }
+
     fn plain(vertices: usize) -> Tessellation {
         Tessellation { vertices, adapt: 0.4, waves: Vec::new(), depth: 0.0, jitter: 0.0, noise: 0.0 }
     }
@@ -290,7 +298,7 @@ mod tests {
             assert!((surface.points.len() as f64 / count as f64 - 1.0).abs() < 0.1, "{}", surface.points.len());
             assert!(least_angle(&surface) > 15.0, "{}", least_angle(&surface));
             assert!(surface.points.iter().all(|&p| solid.distance(p).abs() < 1e-5));
-            assert_eq!(HalfEdges::new(surface.points, &surface.triangles).unwrap().topology(), (1, 1));
+            assert_eq!(topology(surface), (1, 1));
         }
     }
 
@@ -307,6 +315,6 @@ mod tests {
         let surface = remeshed(&solid, &plain(600));
         let on_limb = surface.points.iter().filter(|p| p.x > 1.2).count();
         assert!(on_limb > 60, "{on_limb} vertices on the limb");
-        assert_eq!(HalfEdges::new(surface.points, &surface.triangles).unwrap().topology(), (1, 0));
+        assert_eq!(topology(surface), (1, 0));
     }
 }

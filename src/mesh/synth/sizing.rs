@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use super::vector::{V3, sin_cos};
-use crate::mesh::halfedge::HalfEdges;
+use crate::mesh::halfedge::{AREA_PER_VERTEX, HalfEdges};
 
 /// How one model is cut into triangles. Two models of one class differ in this too.
 #[derive(Debug, Clone)]
@@ -69,7 +69,7 @@ pub fn sizes(mesh: &HalfEdges, style: &Tessellation, bends: &[f64], count: f64) 
     }
     let vertices_at = |scale: f64| -> f64 {
         let of = |a: usize| (scale * taste[a]).min(longest[a]);
-        (0..slots).filter(|&a| areas[a] > 0.0).map(|a| areas[a] / (PER_VERTEX * of(a) * of(a))).sum()
+        (0..slots).filter(|&a| areas[a] > 0.0).map(|a| areas[a] / (AREA_PER_VERTEX * of(a) * of(a))).sum()
     };
     let (mut low, mut high) = (0.02, 50.0);
     for _ in 0..40 {
@@ -86,11 +86,8 @@ pub fn sizes(mesh: &HalfEdges, style: &Tessellation, bends: &[f64], count: f64) 
 
 /// The length of the edges of an even mesh of the same area with `count` vertices.
 pub fn even_length(mesh: &HalfEdges, count: f64) -> f64 {
-    (vertex_areas(mesh).iter().sum::<f64>() / (PER_VERTEX * count)).sqrt()
+    (vertex_areas(mesh).iter().sum::<f64>() / (AREA_PER_VERTEX * count)).sqrt()
 }
-
-/// Area per vertex of the even triangle mesh with edges of length 1.
-const PER_VERTEX: f64 = 0.866_025_403_784_438_6;
 
 /// About `x` to the power `t` in 0…1, for x between 1/4 and 4: Padé's approximant of the logarithm's flow.
 fn ease(x: f64, t: f64) -> f64 {

@@ -6,9 +6,9 @@ use crate::{
     mesh::Mesh,
     spectrum::{
         Band, Crew, Request, SpectrumError, shapes, solve, solve_with,
-        tests::{FEM, Impatient, bits, potato},
+        tests::{FEM, bits, potato},
     },
-    watch::Unwatched,
+    watch::{Patience, Unwatched},
 };
 
 /// A mesh of several pieces, large and small ones.
@@ -66,14 +66,14 @@ fn helpers_that_come_and_go_and_solves_that_are_cancelled_lose_nothing() {
             scope.spawn(move || {
                 let mut patience = 1;
                 while !over.load(Ordering::Relaxed) {
-                    crew.help(&Impatient { left: AtomicUsize::new(patience) });
+                    crew.help(&Patience::of(patience));
                     patience = (patience * 7 + helper) % 61;
                 }
             });
         }
         let mut patience = 3;
         loop {
-            let watch = Impatient { left: AtomicUsize::new(patience) };
+            let watch = Patience::of(patience);
             let request = Request { known: &kept, crew: Some(&crew), ..Request::new(250) };
             match solve_with(&mesh, FEM, &request, &watch) {
                 Ok(spectrum) => {
