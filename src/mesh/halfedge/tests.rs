@@ -111,8 +111,9 @@ fn assert_sound(mesh: &HalfEdges) {
     assert_eq!(defect(mesh, 1), None);
 }
 
-/// Splits, flips and collapses edges at will, in so many rounds, so that the mesh grows and then shrinks; a collapse may
-/// leave vertices with `least` neighbours. Looks at all of the mesh after every move; gives how many there were of each.
+/// Splits, flips and collapses edges at will, in so many rounds, so that the mesh grows and then shrinks; a collapse
+/// may leave vertices with `least` neighbours. Looks at all of the mesh after every move; gives how many there were of
+/// each.
 fn shake(mesh: &mut HalfEdges, rounds: u32, least: usize) -> [usize; 3] {
     let mut state = 12_345_u64;
     let mut below = |n: u32| {
