@@ -20,11 +20,18 @@ pub use portrait::{Bar, Portrait, pixels_png};
 mod axis;
 pub(crate) mod base64;
 mod draw;
+mod legend;
 mod png;
 mod portrait;
 mod svg;
 
+/// Pixels of a PNG for each of the SVG's that make 600 dots an inch, what journals ask of line drawings.
+pub const PRINT: f32 = 6.25;
+
 /// A figure: panels in rows of `across`, and one legend for all below them.
+///
+/// It has the size that it is printed in: a column of 85 mm wide, or a page of 178 mm where panels stand side by side or
+/// an axis has more names than a column has room for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Above everything; empty for none.

@@ -9,7 +9,9 @@ pub use self::{
     boosted::{Boosted, Mark, boosted, marks},
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
-    honest::{Honest, HonestPair, HonestRow, Interval, Learner, Plan, honest, mcnemar},
+    honest::{
+        Honest, HonestPair, HonestRow, Interval, Learner, Plan, Recipe, Tuned, TunedRow, honest, mcnemar, paired, tuned,
+    },
     retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
     tables::{Cell, Table, tables, tables_of},
     why::Method,

@@ -39,8 +39,11 @@ fn every_table_and_figure_is_there_and_a_second_run_gives_the_same_bytes() {
     {
         assert!(text.contains(&format!("\n## {wanted}:")), "no {wanted}");
     }
-    for link in text.lines().filter_map(|line| line.strip_prefix("![")?.split_once("](")?.1.strip_suffix(')')) {
-        assert!(first[link].starts_with(b"<svg"), "{link}");
+    let linked = |line: &str| Some(line.strip_prefix("<img src=\"")?.split_once('"')?.0.to_owned());
+    let links: Vec<String> = text.lines().filter_map(linked).collect();
+    assert_eq!(links.len(), 8, "{links:?}");
+    for link in links {
+        assert!(first[&link].starts_with(b"<svg"), "{link}");
         assert!(first[&link.replace(".svg", ".png")].starts_with(b"\x89PNG"), "{link}");
     }
     let json: serde_json::Value = serde_json::from_slice(&first["paper.json"]).unwrap();

@@ -3,19 +3,24 @@
 use super::{
     Axis, Dash, Figure, Layer, Mark, Panel, Scale, Style,
     axis::Ruler,
-    svg::{Anchor, Svg, TEXT, width},
+    legend::LegendLayout,
+    svg::{Anchor, MILLIMETRE, Svg, TEXT, width},
 };
 
 /// Okabe and Ito's colours without their yellow, which is too light for a line on white.
-const HUES: [&str; 7] = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
-const AXIS: &str = "stroke=\"#000000\" stroke-width=\"1\"";
-const GRID: &str = "stroke=\"#dddddd\" stroke-width=\"0.7\"";
+/// Grey and wine follow, for the few figures that have more curves.
+const HUES: [&str; 9] =
+    ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#882255"];
+const AXIS: &str = "stroke=\"#000000\" stroke-width=\"0.8\"";
+const GRID: &str = "stroke=\"#dddddd\" stroke-width=\"0.5\"";
+/// The width of a column and of the type area of a journal's page, millimetres.
+const COLUMN: f64 = 85.0;
+const PAGE: f64 = 178.0;
+/// Names along an axis that a column has room for.
+const NAMES: usize = 24;
 /// Between two sparse marks on a curve.
-const MARK_DISTANCE: f64 = 46.0;
-const TITLE: f64 = 26.0;
-const LEGEND_LINE: f64 = 18.0;
-/// The sample of a curve in the legend.
-const SAMPLE: f64 = 30.0;
+const MARK_DISTANCE: f64 = 54.0;
+const TITLE: f64 = 22.0;
 
 /// Where the axes of a panel are.
 #[derive(Debug, Clone, Copy)]
@@ -50,16 +55,21 @@ impl Figure {
     #[must_use]
     pub fn svg(&self) -> String {
         let across = self.across.clamp(1, self.panels.len().max(1));
-        let (inner_width, inner_height) = if across == 1 { (560.0, 340.0) } else { (330.0, 240.0) };
+        let page = across > 1 || self.panels.iter().any(|panel| names(panel) > NAMES);
+        let whole = if page { PAGE } else { COLUMN } * MILLIMETRE;
         // One set of margins for all, so that the axes of a row and of a column line up.
-        let mut margins = Margins { left: 0.0, right: 14.0, top: 10.0, bottom: 0.0 };
+        let mut margins = Margins { left: 0.0, right: 12.0, top: 8.0, bottom: 0.0 };
         for panel in &self.panels {
             let needs = needs(panel);
             margins.left = margins.left.max(needs.left);
             margins.top = margins.top.max(needs.top);
             margins.bottom = margins.bottom.max(needs.bottom);
         }
-        let cell_width = margins.left + inner_width + margins.right;
+        let cell_width = whole / across as f64;
+        // Names may take more room than there is for axes.
+        let inner_width = (cell_width - margins.left - margins.right).max(60.0);
+        let square = self.panels.iter().any(|panel| matches!(panel.y.scale, Scale::Names(_)));
+        let inner_height = inner_width * if square { 1.0 } else { 0.72 };
         let cell_height = margins.top + inner_height + margins.bottom;
         let rows = self.panels.len().div_ceil(across);
         let title = if self.title.is_empty() { 0.0 } else { TITLE };
@@ -68,7 +78,7 @@ impl Figure {
         let size = (cell_width * across as f64, title + cell_height * rows as f64 + legend.height());
         let mut svg = Svg::new(size.0, size.1);
         if title > 0.0 {
-            svg.text([size.0 / 2.0, 18.0], Anchor::Middle, 0.0, "font-size=\"13\"", &self.title);
+            svg.text([size.0 / 2.0, 15.0], Anchor::Middle, 0.0, "font-size=\"10.5\"", &self.title);
         }
         for (at, panel) in self.panels.iter().enumerate() {
             let frame = Frame {
@@ -81,56 +91,6 @@ impl Figure {
         }
         legend.draw(&mut svg, &entries, size.1 - legend.height());
         svg.finish()
-    }
-
-    /// Names and looks of the layers, each name once.
-    fn legend(&self) -> Vec<(&str, Style, bool)> {
-        let mut entries: Vec<(&str, Style, bool)> = Vec::new();
-        for layer in self.panels.iter().flat_map(|panel| &panel.layers) {
-            let (name, style, line) = match layer {
-                Layer::Line { name, style, .. } | Layer::Stems { name, style, .. } => (name, style, true),
-                Layer::Points { name, style, .. } | Layer::Intervals { name, style, .. } => (name, style, false),
-                Layer::Map { .. } | Layer::Labels { .. } => continue,
-            };
-            if !name.is_empty() && !entries.iter().any(|(known, ..)| known == name) {
-                entries.push((name, *style, line));
-            }
-        }
-        entries
-    }
-}
-
-/// The legend: entries row by row in columns of one width.
-struct LegendLayout {
-    column: f64,
-    columns: usize,
-    rows: usize,
-}
-
-impl LegendLayout {
-    fn new(entries: &[(&str, Style, bool)], room: f64) -> Self {
-        let widest = entries.iter().map(|(name, ..)| width(name)).fold(0.0, f64::max);
-        let column = (SAMPLE + 10.0 + widest + 16.0).min(room);
-        let columns = ((room - 20.0) / column).floor().max(1.0) as usize;
-        Self { column, columns, rows: entries.len().div_ceil(columns) }
-    }
-
-    fn height(&self) -> f64 {
-        if self.rows == 0 { 0.0 } else { self.rows as f64 * LEGEND_LINE + 10.0 }
-    }
-
-    fn draw(&self, svg: &mut Svg, entries: &[(&str, Style, bool)], top: f64) {
-        for (at, (name, style, line)) in entries.iter().enumerate() {
-            let x = 16.0 + (at % self.columns) as f64 * self.column;
-            let y = top + (at / self.columns) as f64 * LEGEND_LINE + 6.0;
-            if *line {
-                svg.line([x, y], [x + SAMPLE, y], &stroke(*style));
-            }
-            if let Some(mark) = style.mark {
-                draw_mark(svg, mark, [x + SAMPLE / 2.0, y], style.hue);
-            }
-            svg.text([x + SAMPLE + 8.0, y + 0.36 * TEXT], Anchor::Start, 0.0, "", name);
-        }
     }
 }
 
@@ -164,6 +124,15 @@ fn values(panel: &Panel) -> (Vec<f64>, Vec<f64>) {
     (x, y)
 }
 
+/// How many names stand below the axes.
+fn names(panel: &Panel) -> usize {
+    match &panel.x.scale {
+        Scale::Names(names) => names.len(),
+        Scale::Linear | Scale::Log => 0,
+    }
+}
+
+/// Texts along the axes: a number of five digits has room beside the next.
 const TICKS_ACROSS: usize = 9;
 const TICKS_DOWN: usize = 6;
 
@@ -172,15 +141,15 @@ fn needs(panel: &Panel) -> Margins {
     let ruler = Ruler::new(&panel.y, y.into_iter());
     let widest = ruler.ticks(TICKS_DOWN).iter().filter_map(|tick| tick.text.as_deref()).map(width).fold(0.0, f64::max);
     let names = match &panel.x.scale {
-        Scale::Names(names) => names.iter().map(|name| width(name)).fold(0.0, f64::max) * 0.75 + 6.0,
-        Scale::Linear | Scale::Log => 14.0,
+        Scale::Names(names) => names.iter().map(|name| width(name)).fold(0.0, f64::max) * 0.71 + 8.0,
+        Scale::Linear | Scale::Log => 12.0,
     };
-    let label = |axis: &Axis| if axis.label.is_empty() { 0.0 } else { 18.0 };
+    let label = |axis: &Axis| if axis.label.is_empty() { 0.0 } else { 14.0 };
     Margins {
-        left: widest + 16.0 + label(&panel.y),
-        right: 14.0,
-        top: if panel.title.is_empty() { 10.0 } else { 26.0 },
-        bottom: names + 10.0 + label(&panel.x),
+        left: widest + 9.0 + label(&panel.y),
+        right: 12.0,
+        top: if panel.title.is_empty() { 8.0 } else { 20.0 },
+        bottom: names + 8.0 + label(&panel.x),
     }
 }
 
@@ -188,16 +157,21 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, frame: Frame) {
     let (x_values, y_values) = values(panel);
     let (x, y) = (Ruler::new(&panel.x, x_values.into_iter()), Ruler::new(&panel.y, y_values.into_iter()));
     if !panel.title.is_empty() {
-        svg.text([frame.x(0.5), frame.top - 9.0], Anchor::Middle, 0.0, "", &panel.title);
+        svg.text([frame.x(0.5), frame.top - 6.0], Anchor::Middle, 0.0, "", &panel.title);
     }
     draw_axes(svg, panel, frame, &x, &y);
     let at = |&[a, b]: &[f64; 2]| Some([frame.x(x.place(a)?), frame.y(y.place(b)?)]);
+    let marked = |layer: &&Layer| matches!(layer, Layer::Line { style, .. } if style.mark.is_some());
+    let (lines, mut line) = (panel.layers.iter().filter(marked).count(), 0.5);
     for layer in &panel.layers {
         match layer {
             Layer::Line { style, points, .. } => {
                 svg.polyline(points.iter().map(at), &stroke(*style));
                 if let Some(mark) = style.mark {
-                    sparse(points.iter().filter_map(at), |point| draw_mark(svg, mark, point, style.hue));
+                    // Each curve's marks have places of their own: curves that coincide show all of theirs.
+                    let first = frame.left + MARK_DISTANCE * line / lines as f64;
+                    line += 1.0;
+                    sparse(points.iter().map(at), first, |point| draw_mark(svg, mark, point, style.hue));
                 }
             }
             Layer::Points { style, points, .. } => {
@@ -221,15 +195,17 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, frame: Frame) {
                     let Some([x, y]) = at(&label.at) else { continue };
                     let ink = if label.light { "#ffffff" } else { "#000000" };
                     let place = [x, y + 0.36 * TEXT];
-                    svg.inked(place, Anchor::Middle, 0.0, ink, "font-size=\"10\"", &label.text);
+                    svg.inked(place, Anchor::Middle, 0.0, ink, "font-size=\"8\"", &label.text);
                 }
             }
             Layer::Intervals { style, bars, .. } => {
                 for &[place, low, middle, high] in bars {
-                    if let (Some(low), Some(high)) = (at(&[place, low]), at(&[place, high])) {
-                        svg.line(low, high, &stroke(*style));
-                        for [x, y] in [low, high] {
-                            svg.line([x - 4.0, y], [x + 4.0, y], &stroke(*style));
+                    // What reaches below the axes goes on to their edge, without an end.
+                    let foot = at(&[place, low]).or_else(|| Some([frame.x(x.place(place)?), frame.y(0.0)]));
+                    if let (Some(foot), Some(head)) = (foot, at(&[place, high])) {
+                        svg.line(foot, head, &stroke(*style));
+                        for [x, y] in [at(&[place, low]), Some(head)].into_iter().flatten() {
+                            svg.line([x - 2.2, y], [x + 2.2, y], &stroke(*style));
                         }
                     }
                     if let Some(point) = at(&[place, middle]) {
@@ -239,7 +215,8 @@ fn draw_panel(svg: &mut Svg, panel: &Panel, frame: Frame) {
             }
             Layer::Map { cells } => {
                 for cell in cells {
-                    let corners = at(&[cell.x[0], cell.y[0]]).zip(at(&[cell.x[1], cell.y[1]]));
+                    let edge = || Some([frame.x(x.place(cell.x[0])?), frame.y(0.0)]);
+                    let corners = at(&[cell.x[0], cell.y[0]]).or_else(edge).zip(at(&[cell.x[1], cell.y[1]]));
                     if let Some(([left, bottom], [right, top])) = corners {
                         // A band that is thinner than a line can be seen all the same.
                         let height = (bottom - top).max(0.8);
@@ -259,51 +236,53 @@ fn draw_axes(svg: &mut Svg, panel: &Panel, frame: Frame, x: &Ruler<'_>, y: &Rule
     for tick in x.ticks(TICKS_ACROSS) {
         let Some(place) = x.place(tick.value).map(|place| frame.x(place)) else { continue };
         let Some(text) = tick.text else {
-            svg.line([place, bottom], [place, bottom + 2.5], AXIS);
+            svg.line([place, bottom], [place, bottom + 2.0], AXIS);
             continue;
         };
         if !named {
             svg.line([place, frame.top], [place, bottom], GRID);
         }
-        svg.line([place, bottom], [place, bottom + 5.0], AXIS);
+        svg.line([place, bottom], [place, bottom + 3.5], AXIS);
         if named {
-            svg.text([place + 3.0, bottom + 14.0], Anchor::End, 45.0, "", &text);
+            svg.text([place + 2.5, bottom + 11.0], Anchor::End, 45.0, "", &text);
         } else {
-            svg.text([place, bottom + 17.0], Anchor::Middle, 0.0, "", &text);
+            svg.text([place, bottom + 13.0], Anchor::Middle, 0.0, "", &text);
         }
     }
     for tick in y.ticks(TICKS_DOWN) {
         let Some(place) = y.place(tick.value).map(|place| frame.y(place)) else { continue };
         let Some(text) = tick.text else {
-            svg.line([frame.left - 2.5, place], [frame.left, place], AXIS);
+            svg.line([frame.left - 2.0, place], [frame.left, place], AXIS);
             continue;
         };
         if !matches!(panel.y.scale, Scale::Names(_)) {
             svg.line([frame.left, place], [frame.x(1.0), place], GRID);
         }
-        svg.line([frame.left - 5.0, place], [frame.left, place], AXIS);
-        svg.text([frame.left - 9.0, place + 0.36 * TEXT], Anchor::End, 0.0, "", &text);
+        svg.line([frame.left - 3.5, place], [frame.left, place], AXIS);
+        svg.text([frame.left - 6.0, place + 0.36 * TEXT], Anchor::End, 0.0, "", &text);
     }
-    let below = needs(panel).bottom - 8.0;
+    let below = needs(panel).bottom - 6.0;
     svg.text([frame.x(0.5), bottom + below], Anchor::Middle, 0.0, "", &panel.x.label);
-    let beside = needs(panel).left - 12.0;
+    let beside = needs(panel).left - 9.0;
     svg.text([frame.left - beside, frame.y(0.5)], Anchor::Middle, 90.0, "", &panel.y.label);
 }
 
-/// Every so many pixels along a curve.
-fn sparse(points: impl Iterator<Item = [f64; 2]>, mut mark: impl FnMut([f64; 2])) {
-    let mut gone = MARK_DISTANCE;
+/// Every so many pixels across, from `first` on: along a curve's length a jagged one would have more than a smooth one.
+fn sparse(points: impl Iterator<Item = Option<[f64; 2]>>, first: f64, mut mark: impl FnMut([f64; 2])) {
+    let mut next = first;
     let mut last: Option<[f64; 2]> = None;
     for point in points {
-        if let Some(last) = last {
-            // Across alone: a jagged curve would have more of them than a smooth one.
-            gone += (point[0] - last[0]).abs();
+        if let (Some([a, b]), Some([c, d])) = (last, point) {
+            // Where the curve was lifted, or begins, marks are passed over.
+            while next < a {
+                next += MARK_DISTANCE;
+            }
+            while next <= c {
+                mark([next, b + (next - a) / (c - a).max(f64::MIN_POSITIVE) * (d - b)]);
+                next += MARK_DISTANCE;
+            }
         }
-        last = Some(point);
-        if gone >= MARK_DISTANCE {
-            mark(point);
-            gone = 0.0;
-        }
+        last = point;
     }
 }
 
@@ -311,14 +290,14 @@ fn hue(style: usize) -> &'static str {
     HUES[style % HUES.len()]
 }
 
-fn stroke(style: Style) -> String {
+pub(super) fn stroke(style: Style) -> String {
     let dash = match style.dash {
         Dash::Solid => "",
-        Dash::Dashed => " stroke-dasharray=\"7 4\"",
-        Dash::Dotted => " stroke-dasharray=\"1.2 3.6\"",
-        Dash::DashDot => " stroke-dasharray=\"8 3.5 1.2 3.5\"",
+        Dash::Dashed => " stroke-dasharray=\"4.5 2.6\"",
+        Dash::Dotted => " stroke-dasharray=\"0.9 2.6\"",
+        Dash::DashDot => " stroke-dasharray=\"6 2.5 0.9 2.5\"",
     };
-    format!("stroke=\"{}\" stroke-width=\"1.4\"{dash}", hue(style.hue))
+    format!("stroke=\"{}\" stroke-width=\"1.1\"{dash}", hue(style.hue))
 }
 
 /// From light to dark blue, even in lightness, so that grey keeps the order.
@@ -329,8 +308,8 @@ fn shade(weight: f64) -> String {
     format!("fill=\"#{:02x}{:02x}{:02x}\"", mix(0), mix(1), mix(2))
 }
 
-fn draw_mark(svg: &mut Svg, mark: Mark, [x, y]: [f64; 2], colour: usize) {
-    let r = 3.4;
+pub(super) fn draw_mark(svg: &mut Svg, mark: Mark, [x, y]: [f64; 2], colour: usize) {
+    let r = 2.6;
     let data = match mark {
         Mark::Cross => {
             let r = 0.85 * r;
@@ -356,7 +335,7 @@ fn draw_mark(svg: &mut Svg, mark: Mark, [x, y]: [f64; 2], colour: usize) {
         }
     };
     let fill = if matches!(mark, Mark::Cross | Mark::Plus) { "" } else { " fill=\"#ffffff\"" };
-    svg.path(&data, &format!("stroke=\"{}\" stroke-width=\"1.3\"{fill}", hue(colour)));
+    svg.path(&data, &format!("stroke=\"{}\" stroke-width=\"0.9\"{fill}", hue(colour)));
 }
 
 #[cfg(test)]
@@ -423,7 +402,7 @@ mod tests {
         let y = Axis::linear("y").within(0.0, 1.0);
         let panel = Panel { title: String::new(), x: Axis::linear("x"), y, layers: vec![layer] };
         let svg = Figure { title: String::new(), panels: vec![panel], across: 1 }.svg();
-        let curve = svg.lines().find(|line| line.contains("stroke-width=\"1.4\"")).unwrap();
+        let curve = svg.lines().find(|line| line.contains("stroke-width=\"1.1\"")).unwrap();
         assert_eq!((curve.matches('M').count(), curve.matches('L').count()), (3, 1), "{curve}");
     }
 }

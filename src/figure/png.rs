@@ -40,7 +40,7 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
 pub(super) fn draw(svg: &str, scale: f32) -> Result<Pixmap, FigureError> {
     let options = usvg::Options { fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options)?;
-    let (width, height) = ((tree.size().width() * scale).ceil() as u32, (tree.size().height() * scale).ceil() as u32);
+    let (width, height) = ((tree.size().width() * scale).round() as u32, (tree.size().height() * scale).round() as u32);
     let mut picture = Pixmap::new(width, height).ok_or(FigureError::Size { width, height })?;
     resvg::render(&tree, Transform::from_scale(scale, scale), &mut picture.as_mut());
     Ok(picture)
@@ -51,7 +51,7 @@ pub(super) fn pack(picture: &Pixmap) -> Result<Vec<u8>, FigureError> {
 }
 
 impl Figure {
-    /// The figure as a PNG with `scale` pixels for each of the SVG's; 3 is 288 dots an inch.
+    /// The figure as a PNG with `scale` pixels for each of the SVG's; [`PRINT`](super::PRINT) is what print takes.
     ///
     /// # Errors
     /// [`FigureError`], when it is too large.

@@ -16,23 +16,35 @@ pub(super) enum Anchor {
     End,
 }
 
-/// The size of ordinary text.
-pub(super) const TEXT: f64 = 11.0;
+/// Pixels of a millimetre.
+pub(super) const MILLIMETRE: f64 = 96.0 / 25.4;
 
-/// How wide a text is, by the mean width of the letters of its font.
+/// The size of ordinary text: 7 points, what is still read easily in print.
+pub(super) const TEXT: f64 = 28.0 / 3.0;
+
+/// How wide a text is about, by how wide letters of its kind are in the font.
 pub(super) fn width(text: &str) -> f64 {
-    text.chars().count() as f64 * 0.6 * TEXT
+    let letter = |letter: char| match letter {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '\'' | '|' | ' ' | '·' => 0.33,
+        'f' | 'r' | 't' | '-' | '/' | '(' | ')' | '°' => 0.41,
+        'm' | 'w' | 'M' | 'W' | '%' | '−' | '+' | '=' | '<' | '>' | '≤' | '≥' => 0.9,
+        letter if letter.is_uppercase() => 0.7,
+        _ => 0.6,
+    };
+    text.chars().map(letter).sum::<f64>() * TEXT
 }
 
 impl Svg {
+    /// Of a size in pixels, which a page sets in millimetres.
     pub(super) fn new(width: f64, height: f64) -> Self {
         let mut this = Self { text: String::new() };
+        let (across, down) = (width / MILLIMETRE, height / MILLIMETRE);
         this.write(format_args!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
-             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"DejaVu Sans, Verdana, sans-serif\" \
-             font-size=\"{TEXT}\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{across:.4}mm\" height=\"{down:.4}mm\" \
+             viewBox=\"0 0 {width:.2} {height:.2}\" font-family=\"DejaVu Sans, Verdana, sans-serif\" \
+             font-size=\"{TEXT:.2}\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
         ));
-        this.write(format_args!("<rect width=\"{width:.0}\" height=\"{height:.0}\" fill=\"#ffffff\"/>\n"));
+        this.write(format_args!("<rect width=\"{width:.2}\" height=\"{height:.2}\" fill=\"#ffffff\"/>\n"));
         this
     }
 

@@ -19,7 +19,7 @@ use crate::{
     mesh::{Format, Mesh},
     spectrum,
     study::{
-        Honest, Method, Retrieved,
+        Honest, Method, Retrieved, Tuned,
         why::{Apart, Decisions, Neighbours, Shared, Votes},
     },
     watch::Unwatched,
@@ -50,6 +50,8 @@ pub enum Question {
     Retrieval,
     /// How much of each method's error is selection bias.
     Honest,
+    /// What nearest neighbours reach when features, weights, distance and k are tuned without the models asked.
+    Tuned,
     /// The surface of a model, in the canonical form that its eigenfunctions live on.
     Shape(usize),
     /// An eigenfunction on the surface of a model.
@@ -78,6 +80,8 @@ pub enum Finding {
     Retrieval(Arc<Vec<Retrieved>>),
     /// Of [`Question::Honest`].
     Honest(Arc<Honest>),
+    /// Of [`Question::Tuned`].
+    Tuned(Arc<Tuned>),
     /// Of [`Question::Shape`].
     Shape(Arc<Mesh>),
     /// Of [`Question::Function`]: a value for each vertex of the shape.
@@ -153,6 +157,7 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
         Question::Apart { class, other } => reasons::apart_rows(db, cohort, class, other).map(Finding::Apart),
         Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
         Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
+        Question::Tuned => examined::tuned_rows(db, cohort).map(Finding::Tuned),
         Question::Shape(_) | Question::Function { .. } => Err("a surface is read from its file".into()),
     }
 }

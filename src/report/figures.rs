@@ -1,7 +1,7 @@
 //! Figures for print, made of plain rows: the paper's, and those that the screen shows.
 
 use crate::{
-    figure::{Axis, Cell, Dash, Figure, Label, Layer, Mark, Panel, Style},
+    figure::{Axis, Cell, Dash, Figure, Label, Layer, Mark, Panel, Scale, Style},
     spectrum::Normalisation,
     study::{Mark as Selected, Retrieved, Scheme, why::Shared},
 };
@@ -34,50 +34,79 @@ pub fn curve(name: String, style: Style, values: &[f64]) -> Layer {
     Layer::Line { name, style, points }
 }
 
-/// Figures 3 and 6: shares from 0 to 1 against k.
+/// Figures 3 and 6: shares against k, from 0 to the tenth above the greatest.
 #[must_use]
 pub fn against_k(title: &str, label: &str, logarithmic: bool, layers: Vec<Layer>) -> Panel {
     let x = if logarithmic { Axis::log("k") } else { Axis::linear("k") };
-    Panel { title: title.to_owned(), x, y: Axis::linear(label).within(0.0, 1.0), layers }
+    let points = layers.iter().flat_map(|layer| match layer {
+        Layer::Line { points, .. } | Layer::Points { points, .. } => &points[..],
+        _ => &[],
+    });
+    let most = points.map(|point| point[1]).filter(|value| value.is_finite()).fold(0.1, f64::max);
+    Panel { title: title.to_owned(), x, y: Axis::linear(label).within(0.0, (10.0 * most).ceil() / 10.0), layers }
 }
 
-/// The vertical axis of normalised eigenvalues.
-fn spectrum_axis(unit: &str) -> Axis {
-    let axis = Axis::linear(unit);
-    if unit == self::unit(Normalisation::Max) { axis.within(0.0, 1.0) } else { axis }
+/// The vertical axis of normalised eigenvalues. Those that grow like k are shown by their logarithm: AdaBoost selects
+/// most of them near the beginning, where an even axis has no room for them.
+fn spectrum_axis(normalisation: Normalisation) -> Axis {
+    let unit = unit(normalisation);
+    match normalisation {
+        Normalisation::None | Normalisation::Area | Normalisation::Max => Axis::log(unit),
+        Normalisation::Weyl | Normalisation::Log => Axis::linear(unit),
+    }
 }
 
-/// Figure 4: the mean of each selected eigenvalue over the class against its index, for the classes `shown`, one by
-/// one and together.
+/// The axis from `least` to `most` with room for marks at either end, where it is logarithmic; else the data say.
+fn roomy(axis: Axis, least: f64, most: f64) -> Axis {
+    if axis.scale == Scale::Log && least < most { axis.within(least / 1.25, most * 1.25) } else { axis }
+}
+
+/// Figure 4: each selected eigenvalue against its index, its mean over the class and its range there, for the classes
+/// `shown`, one by one and together.
 #[must_use]
-pub fn selections(classes: &[String], shown: &[usize], marks: &[Vec<Selected>], kmax: usize, unit: &str) -> Figure {
+pub fn selections(
+    classes: &[String],
+    shown: &[usize],
+    marks: &[Vec<Selected>],
+    kmax: usize,
+    normalisation: Normalisation,
+) -> Figure {
     // The paper's marks first.
     const LOOKS: [Mark; 6] = [Mark::Cross, Mark::Circle, Mark::Square, Mark::Triangle, Mark::Diamond, Mark::Plus];
-    let layer = |(turn, &class): (usize, &usize)| Layer::Points {
+    let bar = |mark: &Selected| [f64::from(mark.index), mark.low, mark.mean, mark.high];
+    let layer = |(turn, &class): (usize, &usize)| Layer::Intervals {
         name: classes.get(class).cloned().unwrap_or_default(),
         style: Style::marks(turn, LOOKS[turn % LOOKS.len()]),
-        points: marks.get(class).into_iter().flatten().map(|mark| [f64::from(mark.index), mark.mean]).collect(),
+        bars: marks.get(class).into_iter().flatten().map(bar).collect(),
     };
     let all: Vec<Layer> = shown.iter().enumerate().map(layer).collect();
+    // One scale for all panels, so that a place is the same eigenvalue in each.
+    let selected = || shown.iter().filter_map(|&class| marks.get(class)).flatten();
+    let least = selected().map(|mark| mark.low).filter(|low| *low > 0.0).fold(f64::INFINITY, f64::min);
+    let most = selected().map(|mark| mark.high).fold(0.0, f64::max);
+    let axis = roomy(spectrum_axis(normalisation), least, most);
     let panel = |title: &str, layers: Vec<Layer>| Panel {
         title: title.to_owned(),
-        x: Axis::linear("index k").within(0.0, kmax.max(1) as f64),
-        y: spectrum_axis(unit),
+        x: Axis::log("index k").within(1.0, kmax.max(2) as f64),
+        y: axis.clone(),
         layers,
     };
     let name = |class: usize| classes.get(class).map_or("", String::as_str);
     if let ([class], [layer]) = (shown, &all[..]) {
         return alone(panel(name(*class), vec![layer.clone()]));
     }
-    let mut panels: Vec<Panel> =
-        shown.iter().zip(&all).map(|(&class, layer)| panel(name(class), vec![layer.clone()])).collect();
-    panels.push(panel("together", all));
+    let lettered = |(letter, (&class, layer)): (char, (&usize, &Layer))| {
+        panel(&format!("({letter}) {}", name(class)), vec![layer.clone()])
+    };
+    let mut panels: Vec<Panel> = ('a'..).zip(shown.iter().zip(&all)).map(lettered).collect();
+    let last = char::from(b'a'.saturating_add(u8::try_from(panels.len()).unwrap_or(u8::MAX)));
+    panels.push(panel(&format!("({last}) together"), all));
     Figure { title: String::new(), panels, across: 2 }
 }
 
 /// Figure 5: for each class the range of each selected eigenvalue; the darker, the greater its weight in the class.
 #[must_use]
-pub fn bands(classes: &[String], marks: &[Vec<Selected>], unit: &str) -> Figure {
+pub fn bands(classes: &[String], marks: &[Vec<Selected>], normalisation: Normalisation) -> Figure {
     let column = |(class, marks): (usize, &Vec<Selected>)| {
         let most = marks.iter().map(|mark| mark.alpha).fold(0.0, f64::max);
         let cell = move |mark: &Selected| Cell {
@@ -90,11 +119,13 @@ pub fn bands(classes: &[String], marks: &[Vec<Selected>], unit: &str) -> Figure 
         cells.sort_by(|a, b| a.weight.total_cmp(&b.weight));
         cells
     };
-    let cells = marks.iter().enumerate().flat_map(column).collect();
+    let cells: Vec<Cell> = marks.iter().enumerate().flat_map(column).collect();
+    let least = cells.iter().map(|cell| cell.y[0]).filter(|low| *low > 0.0).fold(f64::INFINITY, f64::min);
+    let most = cells.iter().map(|cell| cell.y[1]).fold(0.0, f64::max);
     alone(Panel {
         title: String::new(),
         x: Axis::names("", classes.to_vec()),
-        y: spectrum_axis(unit),
+        y: roomy(spectrum_axis(normalisation), least, most),
         layers: vec![Layer::Map { cells }],
     })
 }

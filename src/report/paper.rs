@@ -21,7 +21,7 @@ use crate::{
     laplacian::Operator,
     query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
     spectrum::Normalisation,
-    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Table},
+    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Table, Tuned},
     watch::Watch,
 };
 
@@ -30,6 +30,7 @@ mod honest;
 mod published;
 mod retrieved;
 mod tables;
+mod tuned;
 pub mod variation;
 mod write;
 
@@ -193,6 +194,9 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
     host.set(Settings { operator: Operator::Fem, normalisation: Normalisation::Log, remesh: None, ..base.clone() });
     host.run(&Turn { watch, at: variants.len(), of: turns })?;
     found.examine(host, "original FEM ln(λ·area)", watch)?;
+    if let Ok(Finding::Tuned(tuned)) = host.find(Question::Tuned, watch)? {
+        found.tuned = Some(tuned);
+    }
     host.set(base.clone());
     if let Some(path) = shown {
         let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(REMESHED));
@@ -216,6 +220,8 @@ pub struct Found {
     pub retrieved: Arc<Vec<Retrieved>>,
     /// Nested cross-validation, each with the name of its features.
     pub honest: Vec<(String, Arc<Honest>)>,
+    /// Nearest neighbours tuned inside the fold, on the FEM spectra of the original models.
+    pub tuned: Option<Arc<Tuned>>,
 }
 
 impl Found {
@@ -322,6 +328,7 @@ impl Paper {
         sections.extend(figures::sections(&head, &found.rows));
         sections.extend(retrieved::sections(&found.retrieved));
         sections.extend(honest::sections(&found.honest));
+        sections.extend(found.tuned.as_deref().into_iter().flat_map(|tuned| tuned::sections(tuned, &found.honest)));
         Self { head, found, sections }
     }
 }

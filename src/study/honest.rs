@@ -12,11 +12,18 @@
 
 use serde::{Deserialize, Serialize};
 
-pub use self::{learner::Learner, nested::honest, test::mcnemar};
+pub use self::{
+    learner::Learner,
+    nested::honest,
+    test::{mcnemar, paired},
+    tuned::{Recipe, Tuned, TunedRow, tuned},
+};
 
+mod deal;
 mod learner;
 mod nested;
 mod test;
+mod tuned;
 
 /// How models are dealt and drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -64,6 +71,8 @@ pub struct HonestRow {
     pub adr: Option<Interval>,
     /// ε of each repeat of nested cross-validation.
     pub repeats: Vec<f64>,
+    /// In how many repeats each model was given a wrong class: the training models in their order, then the queries.
+    pub wrong: Vec<u32>,
     /// Eigenvalues selected, the mean over the folds of all repeats (and over the classes for AdaBoost).
     pub selected: f64,
 }

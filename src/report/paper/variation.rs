@@ -145,17 +145,22 @@ impl Spectra {
     }
 }
 
-/// Marks and dashes that tell the variants apart.
-const LOOKS: [(Dash, Option<Mark>); 9] = [
-    (Dash::Solid, None),
-    (Dash::Dashed, Some(Mark::Cross)),
-    (Dash::Dotted, Some(Mark::Plus)),
-    (Dash::Solid, Some(Mark::Circle)),
-    (Dash::Dashed, None),
-    (Dash::DashDot, None),
-    (Dash::Solid, Some(Mark::Square)),
-    (Dash::Solid, Some(Mark::Triangle)),
-    (Dash::Dashed, Some(Mark::Diamond)),
+/// What is above it is not a zero that was rounded.
+fn least(eigenvalues: &[f64]) -> f64 {
+    1e-9 * eigenvalues.last().copied().unwrap_or(0.0)
+}
+
+/// Colours, dashes and marks that tell the variants apart.
+const LOOKS: [Style; 9] = [
+    Style { hue: 0, dash: Dash::Solid, mark: None },
+    Style { hue: 1, dash: Dash::Dashed, mark: Some(Mark::Cross) },
+    Style { hue: 2, dash: Dash::Dotted, mark: Some(Mark::Plus) },
+    Style { hue: 3, dash: Dash::Solid, mark: Some(Mark::Circle) },
+    Style { hue: 4, dash: Dash::Dashed, mark: None },
+    Style { hue: 5, dash: Dash::DashDot, mark: None },
+    Style { hue: 6, dash: Dash::Solid, mark: Some(Mark::Square) },
+    Style { hue: 7, dash: Dash::Solid, mark: Some(Mark::Triangle) },
+    Style { hue: 8, dash: Dash::Dashed, mark: Some(Mark::Diamond) },
 ];
 
 impl Variation {
@@ -182,45 +187,70 @@ impl Variation {
         answer.models.iter().find(|model| model.name == self.model)
     }
 
-    /// The figure: variants and class under both operators, as far as they are there.
+    /// The figure: variants, how far they are from the original, and the class, under both operators, as far as they
+    /// are there.
     #[must_use]
     pub fn figure(&self) -> Figure {
-        let panel = |title: &str, operator: Operator, of: &[Spectra], named: bool| Panel {
-            title: title.to_owned(),
-            x: Axis::linear("k").within(0.0, EIGENVALUES as f64),
+        let curve = |values: &[f64]| (1_u32..).zip(values).map(|(k, &value)| [f64::from(k), value]).collect();
+        let variants = |operator: Operator, of: &dyn Fn(&[f64]) -> Vec<[f64; 2]>| -> Vec<Layer> {
+            let known = |(at, spectra): (usize, &Spectra)| {
+                let points = of(spectra.of(operator)?);
+                Some(Layer::Line { name: spectra.name.clone(), style: LOOKS[at % LOOKS.len()], points })
+            };
+            self.variants.iter().enumerate().filter_map(known).collect()
+        };
+        let change = |operator: Operator| {
+            let original = self.variants.first().and_then(|first| first.of(operator)).unwrap_or_default();
+            let least = least(original);
+            variants(operator, &|values| {
+                let known = (1_u32..).zip(values.iter().zip(original)).filter(|(_, (_, original))| **original > least);
+                known.map(|(k, (value, original))| [f64::from(k), 100.0 * (value / original - 1.0)]).collect()
+            })
+        };
+        // The others first, so that the model shown lies over them.
+        let members = |operator: Operator| -> Vec<Layer> {
+            let known = |spectra: &Spectra| {
+                let (hue, name) = if spectra.name == self.model { (0, "original") } else { (6, "its class") };
+                let points = curve(spectra.of(operator)?);
+                Some((hue, Layer::Line { name: name.to_owned(), style: Style::line(hue, Dash::Solid), points }))
+            };
+            let mut known: Vec<_> = self.members.iter().filter_map(known).collect();
+            known.sort_by_key(|(hue, _)| std::cmp::Reverse(*hue));
+            known.into_iter().map(|(_, layer)| layer).collect()
+        };
+        let panel = |title: String, operator: Operator, layers: Vec<Layer>| Panel {
+            title,
+            x: Axis::linear("index k").within(0.0, EIGENVALUES as f64),
             y: Axis::linear(if operator == Operator::Fem { "λ/max" } else { "λ" }),
-            layers: of
-                .iter()
-                .enumerate()
-                .filter_map(|(at, spectra)| Some((at, spectra, spectra.of(operator)?)))
-                .map(|(at, spectra, values)| {
-                    let (dash, mark) = if named { LOOKS[at % LOOKS.len()] } else { (Dash::Solid, None) };
-                    Layer::Line {
-                        name: if named { spectra.name.clone() } else { String::new() },
-                        style: Style { hue: at, dash, mark },
-                        points: values.iter().enumerate().map(|(at, &value)| [(at + 1) as f64, value]).collect(),
-                    }
-                })
-                .collect(),
+            layers,
+        };
+        let changed = |title: &str, operator: Operator| Panel {
+            y: Axis::linear("change of λ, %"),
+            ..panel(title.to_owned(), operator, change(operator))
         };
         let (model, class) = (&self.model, &self.class);
+        let (fem, cot) = (Operator::Fem, Operator::Cot);
         let mut panels = vec![
-            panel(&format!("(a) variants of {model}, FEM"), Operator::Fem, &self.variants, true),
-            panel(&format!("(b) variants of {model}, cot"), Operator::Cot, &self.variants, true),
-            panel(&format!("(c) the training models of {class}, FEM"), Operator::Fem, &self.members, false),
-            panel(&format!("(d) the training models of {class}, cot"), Operator::Cot, &self.members, false),
+            panel(format!("(a) variants of {model}, FEM"), fem, variants(fem, &curve)),
+            panel(format!("(b) variants of {model}, cot"), cot, variants(cot, &curve)),
+            changed("(c) against the original, FEM", fem),
+            changed("(d) against the original, cot", cot),
+            panel(format!("(e) {model} and its class, {class}, FEM"), fem, members(fem)),
+            panel(format!("(f) {model} and its class, {class}, cot"), cot, members(cot)),
         ];
         panels.retain(|panel| !panel.layers.is_empty());
         Figure { title: String::new(), panels, across: 2 }
     }
 
     pub(super) fn section(&self) -> Section {
-        let model = &self.model;
-        let words = vec![format!(
-            "The first {EIGENVALUES} eigenvalues of {model}, of variants made of it, and of its class: FEM divided by the \
-             greatest, cot as they are. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
+        let (model, class) = (&self.model, &self.class);
+        let mut words = vec![format!(
+            "(a, b) The first {EIGENVALUES} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
+             them, cot as they are. (c, d) The same as a change against the original. (e, f) {model} among the training \
+             models of its class, {class}. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
              zeros left out."
         )];
+        words.extend(self.seen());
         Section {
             heading: format!("Figure 1: Variation of the first {EIGENVALUES} eigenvalues"),
             words,
@@ -229,13 +259,34 @@ impl Variation {
         }
     }
 
+    /// What the figure shows, in words.
+    fn seen(&self) -> Option<String> {
+        let differences = self.differences();
+        let named = || self.variants.iter().zip(&differences).skip(1);
+        let most = |operator: usize, wanted: &dyn Fn(&Spectra) -> bool| {
+            let known = named().filter(|(spectra, _)| wanted(spectra));
+            let known = known.filter_map(|(spectra, of)| Some((spectra.name.as_str(), of[operator]?)));
+            known.max_by(|(_, a), (_, b)| a.total_cmp(b))
+        };
+        let ((fem, fem_by), (cot, cot_by)) = (most(0, &|_| true)?, most(1, &|_| true)?);
+        let vertices = self.variants.first()?.vertices;
+        let (alike, alike_by) = most(1, &|spectra| spectra.vertices == vertices)?;
+        Some(format!(
+            "No variant moves the FEM eigenvalues by more than {:.1} % in the mean ({fem}). Cot eigenvalues have no mass \
+             matrix, so they fall as vertices are added and rise as they are taken away: by {:.0} % in the mean where \
+             that is most ({cot}), and by {:.1} % at most where the vertices stay ({alike}).",
+            100.0 * fem_by,
+            100.0 * cot_by,
+            100.0 * alike_by
+        ))
+    }
+
     /// For each variant the mean over k of |λ − λ'|/λ' against the original λ', the zeros left out: of FEM and of cot.
     #[must_use]
     pub fn differences(&self) -> Vec<[Option<f64>; 2]> {
         let difference = |spectra: &Spectra, operator| {
             let (ours, theirs) = (spectra.of(operator)?, self.variants.first()?.of(operator)?);
-            // Zeros are such to rounding.
-            let least = 1e-9 * theirs.last().copied().unwrap_or(0.0);
+            let least = least(theirs);
             let terms: Vec<f64> =
                 ours.iter().zip(theirs).filter(|(_, b)| **b > least).map(|(a, b)| (a - b).abs() / b).collect();
             (!terms.is_empty()).then(|| terms.iter().sum::<f64>() / terms.len() as f64)
@@ -246,17 +297,25 @@ impl Variation {
 
     fn table(&self) -> Table {
         let cell = |value: Option<f64>| value.map_or(Cell::Missing, |value| Cell::Number { value, decimals: 5 });
+        // Reasons only where there are any.
+        let reasons = self.variants.iter().any(|spectra| spectra.why.is_some());
         let row = |(spectra, [fem, cot]): (&Spectra, [Option<f64>; 2])| {
-            vec![
-                Cell::Text(spectra.name.clone()),
-                Cell::Count(spectra.vertices as u64),
-                cell(fem),
-                cell(cot),
-                Cell::Text(spectra.why.clone().unwrap_or_default()),
-            ]
+            let mut cells =
+                vec![Cell::Text(spectra.name.clone()), Cell::Count(spectra.vertices as u64), cell(fem), cell(cot)];
+            if reasons {
+                cells.push(Cell::Text(spectra.why.clone().unwrap_or_default()));
+            }
+            cells
         };
-        let columns = ["variant", "vertices", "FEM", "cot", "why there is none"].map(String::from).to_vec();
-        let title = format!("Mean relative difference of the first {EIGENVALUES} eigenvalues");
-        Table { number: 0, title, columns, rows: self.variants.iter().zip(self.differences()).map(row).collect() }
+        let mut columns = ["variant", "vertices", "mean relative change, FEM", "mean relative change, cot"].to_vec();
+        if reasons {
+            columns.push("why there is none");
+        }
+        Table {
+            number: 0,
+            title: format!("Mean relative difference of the first {EIGENVALUES} eigenvalues"),
+            columns: columns.into_iter().map(String::from).collect(),
+            rows: self.variants.iter().zip(self.differences()).map(row).collect(),
+        }
     }
 }

@@ -8,15 +8,12 @@ use std::{
 
 use serde::Serialize;
 
-use super::{Found, Head, Paper, Rows, Section, Variation};
+use super::{Found, Head, Paper, Rows, Section, Variation, tuned};
 use crate::{
-    figure::FigureError,
+    figure::{FigureError, PRINT},
     report::{csv, json, markdown},
-    study::{Honest, Retrieved, Table},
+    study::{Honest, Retrieved, Table, Tuned},
 };
-
-/// Pixels of the PNGs for each of the SVG's: 288 dots an inch.
-const SCALE: f32 = 3.0;
 
 /// Why a document was not written.
 #[derive(Debug, thiserror::Error)]
@@ -60,6 +57,7 @@ struct Whole<'a> {
     variation: &'a Variation,
     retrieved: &'a [Retrieved],
     honest: Vec<Examined<'a>>,
+    tuned: Option<&'a Tuned>,
 }
 
 /// Nested cross-validation on one kind of features.
@@ -84,13 +82,15 @@ impl Paper {
             }
             if let Some((stem, figure)) = &section.figure {
                 files.push((format!("{stem}.svg"), figure.svg().into_bytes()));
-                files.push((format!("{stem}.png"), figure.png(SCALE)?));
+                files.push((format!("{stem}.png"), figure.png(PRINT)?));
             }
         }
         let tables = self.sections.iter().filter_map(|section| Some(section.table.as_ref()?.1.clone())).collect();
-        let Found { rows, variation, retrieved, honest } = &self.found;
+        let Found { rows, variation, retrieved, honest, tuned } = &self.found;
+        files.push(("pairs.csv".to_owned(), csv::table(&tuned::pairs(honest, tuned.as_deref()))?));
         let honest = honest.iter().map(|(features, honest)| Examined { features, honest }).collect();
-        let whole = Whole { head: &self.head, tables, spectra: rows, variation, retrieved, honest };
+        let whole =
+            Whole { head: &self.head, tables, spectra: rows, variation, retrieved, honest, tuned: tuned.as_deref() };
         let mut bytes = Vec::new();
         json::lines(&whole, &mut bytes)?;
         files.push(("paper.json".to_owned(), bytes));
@@ -133,14 +133,17 @@ impl Paper {
 
 fn section(section: &Section, text: &mut String) {
     let _ = writeln!(text, "\n## {}", section.heading);
+    if let Some((stem, figure)) = &section.figure {
+        // Twice the size that it is printed in, as far as a screen has room.
+        let width = if figure.across > 1 { 960 } else { 640 };
+        let name = section.heading.replace('"', "&quot;");
+        let _ = writeln!(text, "\n<img src=\"{stem}.svg\" width=\"{width}\" alt=\"{name}\">");
+    }
     for words in &section.words {
         let _ = writeln!(text, "\n{words}");
     }
     if let Some((_, table)) = &section.table {
         text.push('\n');
         text.push_str(&markdown::rows(table));
-    }
-    if let Some((stem, _)) = &section.figure {
-        let _ = writeln!(text, "\n![{}]({stem}.svg)", markdown::escape(&section.heading));
     }
 }

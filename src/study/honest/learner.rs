@@ -110,7 +110,7 @@ impl Learner {
 }
 
 /// The class of the nearest model. Without anything selected all decisions are wrong.
-fn nearest(sample: &Sample, distance: Distance, exam: Exam<'_>, selection: &[u32]) -> Verdict {
+pub(super) fn nearest(sample: &Sample, distance: Distance, exam: Exam<'_>, selection: &[u32]) -> Verdict {
     let columns = Columns::new(&sample.train);
     let (relevant, recall) = (exam.relevant(), exam.recall());
     let ask = |asked: usize| {

@@ -5,27 +5,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use super::{
-    Honest, HonestPair, HonestRow, Interval, Learner, Plan,
+    Honest, HonestPair, HonestRow, Learner, Plan,
+    deal::{Fold, Parts, Tally},
     learner::Verdict,
-    test::{bootstrap, mcnemar, permutation},
+    test::{mcnemar, paired},
 };
 use crate::{
-    metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, Scale},
+    metrics::{Cancelled, Distance, Exam, Sample, Scale},
     watch::Watch,
 };
-
-/// Streams of chance: one for the bootstrap, one for the permutations, and from here on one for each repeat.
-const DEALS: u64 = 2;
-
-/// What all repeats say of one method: sums by model.
-struct Tally {
-    /// How often each model was given a wrong class.
-    wrong: Vec<u32>,
-    /// Mean ADR of each model, where it has something to find.
-    adr: Option<Vec<Option<f64>>>,
-    repeats: Vec<f64>,
-    selected: f64,
-}
 
 /// Examines every method by the paper's protocol and by nested cross-validation over all models, and every pair of
 /// methods against each other.
@@ -54,18 +42,15 @@ pub fn honest(
     let paper: Vec<Vec<Verdict>> = methods.par_iter().map(paper).collect::<Result<_, _>>()?;
     let tallies = nested(sample, scale, distance, methods, plan, watch)?;
     let row = |(at, &method): (usize, &Learner)| {
-        let (tally, asked) = (&tallies[at], plan.repeats.max(1) as f64);
-        let wrong: Vec<f64> = tally.wrong.iter().map(|&wrong| f64::from(wrong) / asked).collect();
+        let tally = &tallies[at];
         HonestRow {
             method,
             apparent: share(&paper[at][0].wrong),
             query: (!queries.is_empty()).then(|| share(&paper[at][1].wrong)),
-            error: interval(&wrong, plan, 1.0),
-            adr: tally.adr.as_ref().map(|adr| {
-                let known: Vec<f64> = adr.iter().copied().flatten().collect();
-                interval(&known, plan, 0.0)
-            }),
+            error: tally.error(plan),
+            adr: tally.adr(plan),
             repeats: tally.repeats.clone(),
+            wrong: tally.wrong.clone(),
             selected: tally.selected,
         }
     };
@@ -73,54 +58,16 @@ pub fn honest(
     let all = 0..methods.len();
     let pairs = all.clone().flat_map(|first| (first + 1..all.end).map(move |second| (first, second)));
     let pair = |(first, second): (usize, usize)| {
-        let wrong = tallies[first].wrong.iter().zip(&tallies[second].wrong);
-        let apart: Vec<i64> = wrong.map(|(&a, &b)| i64::from(a) - i64::from(b)).collect();
-        let differences: Vec<f64> = apart.iter().map(|&d| d as f64 / plan.repeats.max(1) as f64).collect();
+        let (difference, permutation) = paired(&tallies[first].wrong, &tallies[second].wrong, plan);
         let (a, b) = (&paper[first][1].wrong, &paper[second][1].wrong);
-        HonestPair {
-            first,
-            second,
-            difference: interval(&differences, plan, 0.0),
-            permutation: permutation(&apart, plan.resamples, Chance::new(plan.seed, 1)),
-            mcnemar: (!queries.is_empty()).then(|| mcnemar(a, b)),
-        }
+        let mcnemar = (!queries.is_empty()).then(|| mcnemar(a, b));
+        HonestPair { first, second, difference, permutation, mcnemar }
     };
     Ok(Honest { plan, rows, pairs: pairs.map(pair).collect() })
 }
 
-fn interval(values: &[f64], plan: Plan, of_nothing: f64) -> Interval {
-    bootstrap(values, plan.resamples, Chance::new(plan.seed, 0)).unwrap_or(Interval {
-        mean: of_nothing,
-        low: of_nothing,
-        high: of_nothing,
-    })
-}
-
 fn share(wrong: &[bool]) -> f64 {
     if wrong.is_empty() { 1.0 } else { wrong.iter().filter(|&&wrong| wrong).count() as f64 / wrong.len() as f64 }
-}
-
-/// The training models and then the queries, as rows and labels.
-fn pool(sample: &Sample) -> Vec<(&[f64], u32)> {
-    let train = (0..sample.train.rows()).map(|row| (sample.train.row(row), sample.train_labels[row]));
-    let query = (0..sample.query.rows()).map(|row| (sample.query.row(row), sample.query_labels[row]));
-    train.chain(query).collect()
-}
-
-/// The fold of every model.
-fn deal(labels: &[u32], classes: usize, folds: usize, mut chance: Chance) -> Vec<usize> {
-    let mut fold = vec![0; labels.len()];
-    // Goes on where the last class ended, so that small classes do not all begin at the first fold.
-    let mut next = 0;
-    for class in 0..classes {
-        let mut members: Vec<usize> = (0..labels.len()).filter(|&model| labels[model] as usize == class).collect();
-        chance.shuffle(&mut members);
-        for model in members {
-            fold[model] = next % folds;
-            next += 1;
-        }
-    }
-    fold
 }
 
 fn nested(
@@ -131,60 +78,32 @@ fn nested(
     plan: Plan,
     watch: &dyn Watch,
 ) -> Result<Vec<Tally>, Cancelled> {
-    let models = pool(sample);
-    let labels: Vec<u32> = models.iter().map(|&(_, label)| label).collect();
-    let folds = plan.folds.max(1);
-    let deals: Vec<Vec<usize>> = (0..plan.repeats)
-        .map(|repeat| deal(&labels, sample.classes, folds, Chance::new(plan.seed, DEALS + repeat as u64)))
-        .collect();
-    let parts: Vec<(usize, usize, usize)> = (0..plan.repeats)
-        .flat_map(|repeat| (0..folds).map(move |fold| (repeat, fold)))
-        .flat_map(|(repeat, fold)| (0..methods.len()).map(move |method| (repeat, fold, method)))
-        .collect();
+    let parts = Parts::new(sample, plan);
+    let folds = parts.folds();
+    let all: Vec<(Fold, usize)> =
+        folds.into_iter().flat_map(|fold| (0..methods.len()).map(move |method| (fold, method))).collect();
     let done = AtomicUsize::new(0);
-    let part = |&(repeat, fold, method): &(usize, usize, usize)| {
+    let part = |&(fold, method): &(Fold, usize)| {
         if watch.cancelled() {
             return Err(Cancelled);
         }
-        let split = scale.apply(&split(&models, &deals[repeat], fold, sample.classes));
+        let split = scale.apply(&parts.split(fold));
         let verdict = methods[method].learn(&split, distance, &[Exam::queries(&split)], watch)?.pop();
-        watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, parts.len());
-        Ok((repeat, fold, method, verdict))
+        watch.progress(done.fetch_add(1, Ordering::Relaxed) + 1, all.len());
+        Ok((fold, method, verdict))
     };
-    let verdicts: Vec<_> = parts.par_iter().map(part).collect::<Result<_, _>>()?;
-    let mut tallies: Vec<Tally> = methods
-        .iter()
-        .map(|_| Tally { wrong: vec![0; models.len()], adr: None, repeats: vec![0.0; plan.repeats], selected: 0.0 })
-        .collect();
-    let runs = (plan.repeats * folds) as f64;
-    for (repeat, fold, method, verdict) in verdicts {
-        let (Some(verdict), tally) = (verdict, &mut tallies[method]) else { continue };
-        let asked = (0..models.len()).filter(|&model| deals[repeat][model] == fold);
-        tally.selected += verdict.selected / runs;
-        for (nth, model) in asked.enumerate() {
-            let wrong = verdict.wrong[nth];
-            tally.wrong[model] += u32::from(wrong);
-            tally.repeats[repeat] += f64::from(u8::from(wrong)) / models.len() as f64;
-            if let Some(adr) = verdict.adr.as_ref().and_then(|adr| adr[nth]) {
-                let sums = tally.adr.get_or_insert_with(|| vec![None; models.len()]);
-                *sums[model].get_or_insert(0.0) += adr / plan.repeats as f64;
-            }
-        }
+    let verdicts: Vec<_> = all.par_iter().map(part).collect::<Result<_, _>>()?;
+    let mut tallies: Vec<Tally> = methods.iter().map(|_| Tally::new(parts.models(), plan)).collect();
+    for (fold, method, verdict) in verdicts {
+        let Some(Verdict { wrong, adr, selected }) = verdict else { continue };
+        tallies[method].add(&parts, fold, &wrong, adr.as_deref(), selected);
     }
     Ok(tallies)
 }
 
-/// One fold asked against the others.
-fn split(models: &[(&[f64], u32)], deal: &[usize], fold: usize, classes: usize) -> Sample {
-    let side = |asked: bool| models.iter().zip(deal).filter(move |&(_, &of)| (of == fold) == asked);
-    let rows = |asked: bool| Features::from_rows(side(asked).map(|((row, _), _)| row));
-    let labels = |asked: bool| side(asked).map(|(&(_, label), _)| label).collect();
-    Sample { train: rows(false), train_labels: labels(false), query: rows(true), query_labels: labels(true), classes }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Plan, deal, honest};
+    use super::{Plan, honest};
     use crate::{
         metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, Scale, figures, samples::sample},
         selection::{Cost, Search, climb},
@@ -195,19 +114,6 @@ mod tests {
     const PLAN: Plan = Plan { folds: 3, repeats: 2, resamples: 200, seed: 5 };
     const METHODS: [Learner; 5] =
         [Learner::FirstK, Learner::HILL, Learner::BOOST, Learner::Hill(Cost::Adr, Search::Strict), Learner::Fixed(4)];
-
-    #[test]
-    fn folds_share_every_class() {
-        let labels: Vec<u32> = (0..40).map(|model| model % 4).collect();
-        let fold = deal(&labels, 4, 4, Chance::new(1, 2));
-        for class in 0..4 {
-            for part in 0..4 {
-                let members = (0..40).filter(|&model| labels[model] == class && fold[model] == part).count();
-                assert!((2..=3).contains(&members), "{members}");
-            }
-        }
-        assert_ne!(fold, deal(&labels, 4, 4, Chance::new(1, 3)));
-    }
 
     #[test]
     fn the_paper_s_protocol_stands_beside_it() {

@@ -1,7 +1,18 @@
 //! Intervals and paired tests.
 
-use super::Interval;
+use super::{Interval, Plan, deal::interval};
 use crate::metrics::Chance;
+
+/// How far apart two methods are, and the p of the permutation test.
+///
+/// `first` and `second` say of the same models how often the methods were wrong in the plan's repeats. The difference
+/// is ε of the first less that of the second.
+#[must_use]
+pub fn paired(first: &[u32], second: &[u32], plan: Plan) -> (Interval, f64) {
+    let apart: Vec<i64> = first.iter().zip(second).map(|(&a, &b)| i64::from(a) - i64::from(b)).collect();
+    let differences: Vec<f64> = apart.iter().map(|&d| d as f64 / plan.repeats.max(1) as f64).collect();
+    (interval(&differences, plan, 0.0), permutation(&apart, plan.resamples, Chance::new(plan.seed, 1)))
+}
 
 /// The mean of the values with percentiles of its bootstrap: 2.5 % and 97.5 %. None without values or resamples.
 pub(super) fn bootstrap(values: &[f64], resamples: usize, mut chance: Chance) -> Option<Interval> {

@@ -2,7 +2,7 @@
 
 use super::experiment;
 use crate::{
-    figure::{Axis, Dash, Figure, Layer, Mark, Panel, Style},
+    figure::{Axis, Dash, Figure, Layer, Mark, PRINT, Panel, Style},
     query::{Finding, ModelRow, Parameter, Question},
     report::figures::{self as drawn, MARKS, unit},
     selection::Cost,
@@ -32,9 +32,6 @@ pub enum Drawing {
     },
 }
 
-/// Pixels of PNGs for each of the SVG's: 288 dots an inch.
-const SCALE: f32 = 3.0;
-
 impl Drawing {
     /// The figure as the bytes of an SVG file.
     ///
@@ -55,7 +52,7 @@ impl Drawing {
     /// A line that says why it cannot be drawn.
     pub fn png(&self) -> Result<Vec<u8>, String> {
         let drawn = match self {
-            Self::Figure(figure) => figure.png(SCALE),
+            Self::Figure(figure) => figure.png(PRINT),
             Self::Shape { scene, title, caption } => scene.portrait(title, caption).png(),
         };
         drawn.map_err(|error| error.to_string())
@@ -135,12 +132,12 @@ fn curves(state: &State) -> Option<Figure> {
 /// The figure that the selection view shows where there is room for one.
 fn selection(state: &State) -> Option<Figure> {
     let answer = &state.answer;
-    let unit = unit(answer.settings.normalisation);
+    let normalisation = answer.settings.normalisation;
     match state.figure {
-        Shown::Map => Some(drawn::bands(&answer.classes, answer.marks.value.as_deref()?, unit)),
+        Shown::Map => Some(drawn::bands(&answer.classes, answer.marks.value.as_deref()?, normalisation)),
         Shown::Marks => {
             let marks = answer.marks.value.as_deref()?;
-            Some(drawn::selections(&answer.classes, &state.shown_classes(), marks, answer.settings.kmax, unit))
+            Some(drawn::selections(&answer.classes, &state.shown_classes(), marks, answer.settings.kmax, normalisation))
         }
         Shown::Climb => {
             let (part, label) = match state.settings.cost {
