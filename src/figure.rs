@@ -30,8 +30,8 @@ pub const PRINT: f32 = 6.25;
 
 /// A figure: panels in rows of `across`, and one legend for all below them.
 ///
-/// It has the size that it is printed in: a column of 85 mm wide, or a page of 178 mm where panels stand side by side or
-/// an axis has more names than a column has room for.
+/// It has the size that it is printed in: as wide as a column, 85 mm, or as a page, 178 mm, where panels stand side by
+/// side or an axis has more names than a column has room for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Above everything; empty for none.

@@ -10,7 +10,8 @@ pub use self::{
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
     honest::{
-        Honest, HonestPair, HonestRow, Interval, Learner, Plan, Recipe, Tuned, TunedRow, honest, mcnemar, paired, tuned,
+        Decisions, Honest, HonestPair, HonestRow, Interval, Learner, Plan, Recipe, SPLITS, Splits, Spread, Tuned,
+        TunedRow, honest, mcnemar, paired, splits, tuned,
     },
     retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
     tables::{Cell, Table, tables, tables_of},

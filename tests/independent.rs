@@ -6,7 +6,7 @@
 use eigenselect::{
     metrics::{Distance, Features},
     selection::{Cost, boost, climb},
-    study::{Climbed, FirstK, Sample, Score, boosted, climbed, first_k},
+    study::{Climbed, Draws, FirstK, Pick, Sample, Scheme, Score, Sources, boosted, climbed, first_k, retrieval},
     watch::Unwatched,
 };
 use serde_json::Value;
@@ -125,6 +125,30 @@ fn by_hand() -> Sample {
         query: Features::from_rows([[0.0, 3.0], [0.0, 6.4]]),
         query_labels: vec![0, 1],
         classes: 2,
+    }
+}
+
+#[test]
+fn retrieval_agrees() {
+    let (sample, expected) = (read(), expected());
+    let strong = boost(&sample, 20, &Unwatched).unwrap();
+    for distance in Distance::ALL {
+        let curves = first_k(&sample, distance, &Unwatched).unwrap();
+        let climbed = |cost| climbed(&sample, distance, &climb(&sample, distance, cost, &Unwatched).unwrap());
+        let (climb_error, climb_adr) = (climbed(Cost::Error), climbed(Cost::Adr));
+        let sources = Sources { first_k: &curves, climb_error: &climb_error, climb_adr: &climb_adr, strong: &strong };
+        let theirs = &expected[distance.name()]["retrieval"];
+        let ours = retrieval(&sample, distance, sources, Draws::default(), &Unwatched).unwrap();
+        let mut compared = 0;
+        // Random subsets are drawn by the program's own chance.
+        for found in ours.iter().filter(|found| found.scheme.pick != Pick::Random) {
+            let Scheme { gate, pick, kept } = found.scheme;
+            let name = format!("{} {} {kept}", gate.name(), pick.name());
+            let theirs = [0, 1].map(|side| theirs[side][&name].as_f64().unwrap());
+            assert_near(&[found.adr.train, found.adr.query.unwrap()], &theirs);
+            compared += 1;
+        }
+        assert_eq!(compared, 20);
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     selection::Cost,
     spectrum::Normalisation,
     store::Key,
-    study::{self, Draws, Honest, Learner, Plan, Recipe, Retrieved, Sources, Tuned},
+    study::{self, Draws, Honest, Learner, Plan, Recipe, Retrieved, SPLITS, Sources, Splits, Tuned},
 };
 
 /// Increase when [`study::honest`] would say something else of the same sample.
@@ -82,6 +82,24 @@ pub(crate) fn tuned_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
     }
     let found = study::tuned(&samples, &recipes, plan, db.revoked()).unwrap_or_else(|_| leave(db));
     let found = found.ok_or_else(|| Failure::from("no model takes part"))?;
+    store.put(&key, &found);
+    Ok(Arc::new(found))
+}
+
+/// The paper's figures on other splits of the models; kept as the above is.
+#[salsa::tracked(returns(clone), lru = 8)]
+pub(crate) fn split_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Splits>, Failure> {
+    let knobs = Knobs::get(db);
+    let (distance, rounds) = (knobs.distance(db), knobs.rounds(db));
+    let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
+    let how = format!("{distance:?} {rounds} {SPLITS}");
+    let key = Key::new("splits").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
+    let store = db.library().store();
+    trace(db).executed(Query::HonestRows);
+    if let Some(kept) = store.get::<Splits>(&key) {
+        return Ok(Arc::new(kept));
+    }
+    let found = study::splits(&sample, distance, rounds, db.revoked()).unwrap_or_else(|_| leave(db));
     store.put(&key, &found);
     Ok(Arc::new(found))
 }

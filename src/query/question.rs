@@ -19,7 +19,7 @@ use crate::{
     mesh::{Format, Mesh},
     spectrum,
     study::{
-        Honest, Method, Retrieved, Tuned,
+        Honest, Method, Retrieved, Splits, Tuned,
         why::{Apart, Decisions, Neighbours, Shared, Votes},
     },
     watch::Unwatched,
@@ -52,6 +52,8 @@ pub enum Question {
     Honest,
     /// What nearest neighbours reach when features, weights, distance and k are tuned without the models asked.
     Tuned,
+    /// What the paper's figures would be on other splits of the models.
+    Splits,
     /// The surface of a model, in the canonical form that its eigenfunctions live on.
     Shape(usize),
     /// An eigenfunction on the surface of a model.
@@ -82,6 +84,8 @@ pub enum Finding {
     Honest(Arc<Honest>),
     /// Of [`Question::Tuned`].
     Tuned(Arc<Tuned>),
+    /// Of [`Question::Splits`].
+    Splits(Arc<Splits>),
     /// Of [`Question::Shape`].
     Shape(Arc<Mesh>),
     /// Of [`Question::Function`]: a value for each vertex of the shape.
@@ -158,6 +162,7 @@ fn find(db: &Database, members: &Members, rows: &[usize], question: &Question) -
         Question::Retrieval => examined::retrieval_rows(db, cohort).map(Finding::Retrieval),
         Question::Honest => examined::honest_rows(db, cohort).map(Finding::Honest),
         Question::Tuned => examined::tuned_rows(db, cohort).map(Finding::Tuned),
+        Question::Splits => examined::split_rows(db, cohort).map(Finding::Splits),
         Question::Shape(_) | Question::Function { .. } => Err("a surface is read from its file".into()),
     }
 }

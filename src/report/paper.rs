@@ -20,11 +20,13 @@ use crate::{
     figure::Figure,
     laplacian::Operator,
     query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
+    selection::Search,
     spectrum::Normalisation,
-    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Table, Tuned},
-    watch::Watch,
+    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Splits, Table, Tuned},
+    watch::{Silent, Watch},
 };
 
+mod differences;
 mod figures;
 mod honest;
 mod published;
@@ -121,6 +123,21 @@ pub struct Rows {
     pub boosted: Arc<Boosted>,
     /// Figures 4 and 5.
     pub marks: Arc<Vec<Vec<Mark>>>,
+    /// The same tables on other splits of the models, for spectra that the paper has.
+    pub splits: Option<Arc<Splits>>,
+    /// Hill climbing by other moves than the paper's, for the same.
+    pub searches: Vec<Searched>,
+}
+
+/// Hill climbing by other moves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Searched {
+    /// Which moves.
+    pub search: Search,
+    /// ε on D of the climb for ε.
+    pub error: f64,
+    /// Mean ADR on D of the climb for it.
+    pub adr: f64,
 }
 
 /// Why there is no document.
@@ -176,7 +193,11 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
     for (turn, &variant) in variants.iter().enumerate() {
         host.set(variant.settings(base));
         let answer = host.run(&Turn { watch, at: turn, of: turns })?;
-        found.rows.push(Rows::new(variant, &answer)?);
+        let mut rows = Rows::new(variant, &answer)?;
+        if variant.column().is_some() {
+            rows.examine(host, watch)?;
+        }
+        found.rows.push(rows);
         if variant == Variant::BEST
             && let Ok(Finding::Retrieval(rows)) = host.find(Question::Retrieval, watch)?
         {
@@ -279,7 +300,39 @@ impl Rows {
         };
         let members = |role| answer.members.iter().filter(|&&at| answer.models[at].role == role).count();
         let (train, query) = (members(Role::Train), members(Role::Query));
-        Ok(Self { spectrum, name, train, query, out, first_k, climb_error, climb_adr, boosted, marks })
+        let (splits, searches) = (None, Vec::new());
+        Ok(Self {
+            spectrum,
+            name,
+            train,
+            query,
+            out,
+            first_k,
+            climb_error,
+            climb_adr,
+            boosted,
+            marks,
+            splits,
+            searches,
+        })
+    }
+
+    /// What else the paper's words and its unknown split allow; the host is left at the parameters that it has.
+    fn examine(&mut self, host: &mut Host, watch: &dyn Watch) -> Result<(), Cancelled> {
+        if let Ok(Finding::Splits(splits)) = host.find(Question::Splits, watch)? {
+            self.splits = Some(splits);
+        }
+        let settings = host.settings().clone();
+        for search in Search::ALL.into_iter().filter(|&search| search != settings.search) {
+            host.set(Settings { search, ..settings.clone() });
+            let answer = host.run(&Silent(watch))?;
+            if let (Some(error), Some(adr)) = (&answer.climb_error.value, &answer.climb_adr.value) {
+                self.searches.push(Searched { search, error: error.error.train, adr: adr.adr.train });
+            }
+        }
+        host.set(settings);
+        host.run(&Silent(watch))?;
+        Ok(())
     }
 }
 
@@ -322,6 +375,7 @@ impl Paper {
             parameters: Parameters(host.settings().clone()),
         };
         let mut sections = tables::sections(&head, &found.rows);
+        sections.extend(differences::sections(&head, &found.rows));
         if !found.variation.variants.is_empty() {
             sections.push(found.variation.section());
         }

@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 pub use self::{
     learner::Learner,
     nested::honest,
+    splits::{Decisions, SPLITS, Splits, Spread, splits},
     test::{mcnemar, paired},
     tuned::{Recipe, Tuned, TunedRow, tuned},
 };
@@ -22,6 +23,7 @@ pub use self::{
 mod deal;
 mod learner;
 mod nested;
+mod splits;
 mod test;
 mod tuned;
 

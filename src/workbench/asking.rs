@@ -181,7 +181,7 @@ impl State {
                 Question::Function { .. } => Stage::Spectrum,
                 Question::Shared(_) | Question::Apart { .. } => Stage::Features,
                 // Every method has a part in them; what is only read off a method's rows has none.
-                Question::Retrieval | Question::Honest | Question::Tuned => {
+                Question::Retrieval | Question::Honest | Question::Tuned | Question::Splits => {
                     return !matches!(parameter, Parameter::K | Parameter::Cost | Parameter::Sel | Parameter::Class);
                 }
                 Question::Decisions(method) | Question::Reasons { method, .. } => {

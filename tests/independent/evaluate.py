@@ -1,4 +1,4 @@
-"""Independent evaluation of first-k, HCBw and AdaBoost, with NumPy and nothing else.
+"""Independent evaluation of first-k, HCBw, AdaBoost and retrieval (Tables 1 to 5), with NumPy and nothing else.
 
     python3 tests/independent/evaluate.py FEATURES.csv [DISTANCE ...] > expected.json
 
@@ -159,6 +159,48 @@ def score(rows, train, labels, positive, taken):
     return s
 
 
+def mean_adr(side, retrieve):
+    """Mean ADR of the lists of models that retrieve(asked) finds, which may be shorter than what is relevant."""
+    adrs = []
+    for asked in np.flatnonzero(side.relevant > 0):
+        found = np.array(retrieve(asked), dtype=int)[:side.relevant[asked]]
+        hits = np.zeros(side.relevant[asked])
+        hits[:len(found)] = side.labels[found] == side.truth[asked]
+        adrs.append((np.cumsum(hits) / np.arange(1, len(hits) + 1)).mean())
+    return float(np.mean(adrs)) if adrs else 0.0
+
+
+def ranking(side, distance, selection):
+    sums = total(side, distance, selection)
+    order = [list(row) for row in np.argsort(sums, axis=1, kind="stable")]
+    return [[m for m in row if m != asked] if side.itself else row for asked, row in enumerate(order)]
+
+
+def retrieval(side, distance, first_k, hill, scores):
+    """Mean ADR of every classification before every retrieval: {"gate pick kept": mean ADR}.
+
+    first_k and hill hold the selections (from 0) for epsilon and for mean ADR; scores has S for each class (-inf where
+    it has no training model) and each model asked.
+    """
+    by_first, by_hill = ([ranking(side, distance, selection) for selection in pair] for pair in (first_k, hill))
+    known = [c for c in range(len(scores)) if (side.labels == c).any()]
+    # The class of the nearest model first; of equal S the lower class.
+    nearest = lambda order: [list(dict.fromkeys(int(side.labels[m]) for m in row)) for row in order]
+    gates = {
+        "SC": [sorted(known, key=lambda c: (-scores[c][asked], c)) for asked in range(len(side.truth))],
+        "first-k": nearest(by_first[0]),
+        "HCBw": nearest(by_hill[0]),
+    }
+    found = {}
+    for pick, (_, order) in [("first-k", by_first), ("HCBw", by_hill)]:
+        found[f"– {pick} 0"] = mean_adr(side, lambda asked: order[asked])
+        for gate, classes in gates.items():
+            for kept in [5, 10, 15]:
+                found[f"{gate} {pick} {kept}"] = mean_adr(
+                    side, lambda asked: [m for m in order[asked] if side.labels[m] in classes[asked][:kept]])
+    return found
+
+
 def main():
     with open(sys.argv[1], newline="") as file:
         records = list(csv.reader(file))[1:]
@@ -171,6 +213,11 @@ def main():
     if len(query):
         sides.append(Side(query, query_labels, train, labels))
 
+    rounds = 20
+    classes = [boost(train, labels, c, rounds) for c in range(len(names))]
+    scores = [np.stack([score(side.asked, train, labels, c, taken) for c, taken in enumerate(classes)])
+              for side in sides]
+
     report = {}
     for distance in sys.argv[2:] or ["l2", "l1", "chi2", "wesd1.5", "wesd2"]:
         curves = [first_k(side, distance) for side in sides]
@@ -178,22 +225,23 @@ def main():
         best_adr = int(np.argmax(curves[0][1])) + 1
         entry = {"error": [c[0] for c in curves], "adr": [c[1] for c in curves],
                  "best_error": best_error, "best_adr": best_adr}
+        hill = []
         for cost in ["error", "adr"]:
             selected, moves = climb(sides[0], distance, cost)
+            hill.append(selected)
             figures = [side.figures(side.judge(total(side, distance, selected))) for side in sides]
             entry["climb_" + cost] = {"selected": sorted(j + 1 for j in selected), "steps": moves,
                                       "error": [f[0] for f in figures], "adr": [f[1] for f in figures]}
+        entry["retrieval"] = [retrieval(side, distance, (range(best_error), range(best_adr)), hill, s)
+                              for side, s in zip(sides, scores)]
         report[distance] = entry
 
-    rounds = 20
-    classes = [boost(train, labels, c, rounds) for c in range(len(names))]
-    decided = [np.argmax(np.stack([score(rows, train, labels, c, taken) for c, taken in enumerate(classes)]), axis=0)
-               for rows in [train, query]]
+    decided = [np.argmax(s, axis=0) for s in scores]
     known = [taken for c, taken in enumerate(classes) if (labels == c).any()]
     report["boost"] = {
         "rounds": classes,
         "decided": [int(c) for d in decided for c in d],
-        "error": [float((d != truth).mean()) for d, truth in zip(decided, [labels, query_labels]) if len(truth)],
+        "error": [float((d != truth).mean()) for d, truth in zip(decided, [labels, query_labels])],
         "mean_chosen": float(np.mean([len({r[0] for r in taken}) for taken in known])),
         "mean_ties": float(np.mean([len({i for r in taken for i in r[3]}) for taken in known])),
     }

@@ -74,7 +74,7 @@ fn find(answer: &Answer, question: &Question) -> (Result<Finding, Arc<str>>, Arc
             .ok_or_else(|| "one of the classes has no training model".into()),
         Question::Shape(_) | Question::Function { .. } => Err("the file is not there".into()),
         Question::Retrieval => Ok(Finding::Retrieval(Arc::new(retrieved()))),
-        Question::Honest | Question::Tuned => Err("there are no models to compare".into()),
+        Question::Honest | Question::Tuned | Question::Splits => Err("there are no models to compare".into()),
     };
     (found, places)
 }

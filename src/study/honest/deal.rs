@@ -27,9 +27,7 @@ pub(super) struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     pub(super) fn new(sample: &'a Sample, plan: Plan) -> Self {
-        let train = (0..sample.train.rows()).map(|row| (sample.train.row(row), sample.train_labels[row]));
-        let query = (0..sample.query.rows()).map(|row| (sample.query.row(row), sample.query_labels[row]));
-        let models: Vec<(&[f64], u32)> = train.chain(query).collect();
+        let models = pooled(sample);
         let labels: Vec<u32> = models.iter().map(|&(_, label)| label).collect();
         let folds = plan.folds.max(1);
         let deals = (0..plan.repeats)
@@ -71,6 +69,13 @@ impl<'a> Parts<'a> {
             classes: self.classes,
         }
     }
+}
+
+/// The training models and then the queries, as rows and labels.
+pub(super) fn pooled(sample: &Sample) -> Vec<(&[f64], u32)> {
+    let train = (0..sample.train.rows()).map(|row| (sample.train.row(row), sample.train_labels[row]));
+    let query = (0..sample.query.rows()).map(|row| (sample.query.row(row), sample.query_labels[row]));
+    train.chain(query).collect()
 }
 
 /// The fold of every model. Models are dealt class by class, so that every fold has as even a share of each as can be.

@@ -1,0 +1,170 @@
+//! What the paper's figures would be on other splits of the same models.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::deal::pooled;
+use crate::{
+    metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures},
+    selection::{Cost, Ranges, boost, climb, decide},
+    study::{boosted, first_k},
+    watch::{Silent, Watch},
+};
+
+/// Splits that are drawn, and what they depend on.
+pub const SPLITS: usize = 24;
+const SEED: u64 = 7;
+/// A stream of chance for each split, away from those of other uses.
+const STREAM: u64 = 1000;
+
+/// The least, the mean and the greatest of a figure over splits.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Spread {
+    /// The least.
+    pub low: f64,
+    /// The mean.
+    pub mean: f64,
+    /// The greatest.
+    pub high: f64,
+}
+
+/// The figures on D of Tables 1 to 4 over random splits.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Splits {
+    /// Least ε of the first k.
+    pub first_k_error: Spread,
+    /// ε of hill climbing for ε.
+    pub climb_error: Spread,
+    /// ε of AdaBoost.
+    pub boosted: Spread,
+    /// Greatest mean ADR of the first k.
+    pub first_k_adr: Spread,
+    /// Mean ADR of hill climbing for it.
+    pub climb_adr: Spread,
+    /// AdaBoost's other decisions, on D as it is.
+    pub decisions: Decisions,
+}
+
+/// ε on D of AdaBoost when its classifiers decide in other ways than by the greatest p(C|M).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Decisions {
+    /// By the greatest S as a share of its Σ α, so that classes with more rounds do not count for more.
+    pub share: f64,
+    /// By the first class, in the data set's order, whose S is positive: yes or no, class after class.
+    pub first: f64,
+}
+
+/// Draws D anew [`SPLITS`] times, of all models of D and Q as many of each class as D has, and computes the figures on
+/// it as the paper does, with `rounds` rounds of AdaBoost.
+///
+/// Without query models every D is the same one.
+///
+/// # Errors
+/// [`Cancelled`] when the watch said so.
+pub fn splits(sample: &Sample, distance: Distance, rounds: usize, watch: &dyn Watch) -> Result<Splits, Cancelled> {
+    let draw = |nth: usize| {
+        let drawn = drawn(sample, Chance::new(SEED, STREAM + nth as u64));
+        let curves = first_k(&drawn, distance, &Silent(watch))?;
+        let climbed = |cost: Cost| {
+            let climb = climb(&drawn, distance, cost, &Silent(watch))?;
+            Ok(figures(Exam::leave_one_out(&drawn), distance, &climb.order()))
+        };
+        let error = curves.error.at(curves.best_error).map_or(1.0, |score| score.train);
+        let adr = curves.adr.at(curves.best_adr).map_or(0.0, |score| score.train);
+        let boosted = boosted(&drawn, &boost(&drawn, rounds, &Silent(watch))?).error.train;
+        Ok([error, climbed(Cost::Error)?.0, boosted, adr, climbed(Cost::Adr)?.1])
+    };
+    let found: Vec<[f64; 5]> = (0..SPLITS).into_par_iter().map(draw).collect::<Result<_, _>>()?;
+    let spread = |at: usize| {
+        let values = || found.iter().map(|figures| figures[at]);
+        Spread {
+            low: values().fold(f64::INFINITY, f64::min),
+            mean: values().sum::<f64>() / SPLITS as f64,
+            high: values().fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    Ok(Splits {
+        first_k_error: spread(0),
+        climb_error: spread(1),
+        boosted: spread(2),
+        first_k_adr: spread(3),
+        climb_adr: spread(4),
+        decisions: decisions(sample, rounds, watch)?,
+    })
+}
+
+fn decisions(sample: &Sample, rounds: usize, watch: &dyn Watch) -> Result<Decisions, Cancelled> {
+    let (classes, ranges) = (boost(sample, rounds, &Silent(watch))?, Ranges::new(sample));
+    let sums: Vec<f64> = classes.iter().map(|strong| strong.rounds.iter().map(|round| round.alpha).sum()).collect();
+    let (mut share, mut first) = (0, 0);
+    for (row, &label) in sample.train_labels.iter().enumerate() {
+        let score =
+            |class: usize| ranges.known(class).then(|| classes[class].score(class, &ranges, sample.train.row(row)));
+        let scores: Vec<Option<f64>> = (0..sample.classes).map(score).collect();
+        let shares: Vec<Option<f64>> = scores
+            .iter()
+            .zip(&sums)
+            .map(|(score, sum)| score.map(|score| score / sum.max(f64::MIN_POSITIVE)))
+            .collect();
+        share += usize::from(decide(&shares) != Some(label));
+        let positive = scores.iter().position(|score| score.is_some_and(|score| score > 0.0));
+        first += usize::from(positive != Some(label as usize));
+    }
+    let asked = sample.train_labels.len().max(1) as f64;
+    Ok(Decisions { share: share as f64 / asked, first: first as f64 / asked })
+}
+
+/// Training models drawn from all, as many of each class as there were; nobody is asked.
+fn drawn(sample: &Sample, mut chance: Chance) -> Sample {
+    let models = pooled(sample);
+    let mut taken = Vec::new();
+    for (class, size) in (0_u32..).zip(sample.class_sizes()) {
+        let mut members: Vec<usize> = (0..models.len()).filter(|&model| models[model].1 == class).collect();
+        chance.shuffle(&mut members);
+        taken.extend_from_slice(&members[..size.min(members.len())]);
+    }
+    // In the order of the models, by which ties are settled.
+    taken.sort_unstable();
+    Sample {
+        train: Features::from_rows(taken.iter().map(|&model| models[model].0)),
+        train_labels: taken.iter().map(|&model| models[model].1).collect(),
+        query: Features::default(),
+        query_labels: Vec::new(),
+        classes: sample.classes,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{drawn, splits};
+    use crate::{
+        metrics::{Cancelled, Chance, Distance, Features, Sample, samples::sample},
+        study::first_k,
+        watch::{Unwanted, Unwatched},
+    };
+
+    #[test]
+    fn a_split_has_as_many_of_each_class_and_differs_from_the_next() {
+        let sample = sample(2, 7, 6, 0);
+        let of = |stream| drawn(&sample, Chance::new(1, stream));
+        assert_eq!(of(1).class_sizes(), sample.class_sizes());
+        assert_eq!(of(1), of(1));
+        assert_ne!(of(1).train, of(2).train);
+    }
+
+    #[test]
+    fn without_queries_every_split_is_the_same() {
+        let all = sample(3, 7, 8, 0);
+        let alone = Sample { query: Features::default(), query_labels: Vec::new(), ..all.clone() };
+        let same = splits(&alone, Distance::L2, 5, &Unwatched).unwrap();
+        let curves = first_k(&alone, Distance::L2, &Unwatched).unwrap();
+        let error = curves.error.at(curves.best_error).unwrap().train;
+        assert_eq!((same.first_k_error.low, same.first_k_error.high), (error, error));
+        assert_eq!(same.climb_adr.low, same.climb_adr.high);
+        // Every model lies in the ranges of its own class, so no share is greater than that of the right one.
+        assert!(same.decisions.share <= same.decisions.first && same.decisions.first <= 1.0);
+        let spread = splits(&all, Distance::L2, 5, &Unwatched).unwrap().first_k_adr;
+        assert!(spread.low < spread.mean && spread.mean < spread.high, "{spread:?}");
+        assert_eq!(splits(&all, Distance::L2, 5, &Unwanted), Err(Cancelled));
+    }
+}
