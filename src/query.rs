@@ -21,6 +21,7 @@ pub use self::{
 };
 
 pub(crate) use self::{
+    heap::share as share_heap,
     inquiry::{Members, Piece},
     pool::News,
 };

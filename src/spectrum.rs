@@ -264,7 +264,7 @@ pub fn solve_with(
     let laplacian =
         assemble_watched(mesh, choice, watch).map_err(|error| SpectrumError::from(error).keeping(request.known))?;
     meter.charge(Cost::Assembly);
-    let mut tools = request.crew.map(Crew::take).unwrap_or_default();
+    let mut tools = request.crew.map(|crew| crew.take(laplacian.matrix.order())).unwrap_or_default();
     let solved = solve::solve(&laplacian, request, watch, &mut tools);
     if let Some(crew) = request.crew {
         crew.give_back(tools);

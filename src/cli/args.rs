@@ -27,8 +27,8 @@ Examples:
   tui cache stats                            what is kept between sessions
 
 DIR holds a folder of meshes for each class (DIR/<class>/<model>.obj), or train/ and query/
-with such folders, or Princeton .cla files. Meshes are OBJ, OFF, PLY or STL (points: XYZ too). To open a folder
-that is named like a command, write ./report.
+with such folders, or Princeton .cla files. Meshes are OBJ, OFF, PLY or STL (points: XYZ too).
+To open a folder that is named like a command, write ./report.
 
 Exit codes: 0 done, 1 failed, 2 wrong command line, 130 interrupted by Ctrl-C (what is finished
 is kept and not computed again).";

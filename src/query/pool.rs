@@ -199,6 +199,8 @@ fn work(shared: &Shared, thread: usize) {
                 }
                 if shared.ended.swap(0, Ordering::Relaxed) > 0 {
                     drop(wanted);
+                    // There is nothing to solve: what is kept for the next mesh is not needed either.
+                    shared.library.crew().rest();
                     heap::give_back();
                     wanted = shared.wanted();
                     continue;

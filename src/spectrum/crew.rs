@@ -18,6 +18,9 @@ const NAP: Duration = Duration::from_millis(2);
 /// Scratch memory is kept for the next mesh where the largest one has had no more rows: then it is about 60 MB.
 const KEPT: usize = 20_000;
 
+/// A mesh of this many times fewer rows begins anew rather than hold on to it.
+const WASTED: usize = 3;
+
 /// Lets threads that have nothing else to do take part in the solves of others, mesh by mesh of a data set or many
 /// threads at one mesh, and keeps the threads' scratch memory from one mesh to the next.
 ///
@@ -37,7 +40,7 @@ impl Crew {
         while !leave.cancelled() {
             // To the one with the fewest helpers, the oldest of these.
             let team = self.open().iter().min_by_key(|team| team.helpers()).map(Arc::clone);
-            let helped = team.is_some_and(|team| team.help(tools.get_or_insert_with(|| self.take()), leave));
+            let helped = team.is_some_and(|team| team.help(tools.get_or_insert_with(|| self.take(team.rows())), leave));
             if !helped {
                 thread::sleep(NAP);
             }
@@ -81,9 +84,22 @@ impl Crew {
         self.tools.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Scratch memory, of an earlier solve if there is any.
-    pub(super) fn take(&self) -> Tools {
-        self.tools().pop().unwrap_or_default()
+    /// Scratch memory for so many rows, of an earlier solve if there is any: the least that suffices, else the most
+    /// there is. What is far too much is freed.
+    pub(super) fn take(&self, rows: usize) -> Tools {
+        let mut tools = self.tools();
+        let nearest = (0..tools.len()).min_by_key(|&at| {
+            let largest = tools[at].largest;
+            (largest < rows, largest.abs_diff(rows))
+        });
+        let found = nearest.map(|at| tools.swap_remove(at));
+        drop(tools);
+        found.filter(|found| found.largest / WASTED <= rows).unwrap_or_default()
+    }
+
+    /// Frees all scratch memory that no solve has.
+    pub fn rest(&self) {
+        self.tools().clear();
     }
 
     /// Keeps scratch memory for later.

@@ -157,6 +157,11 @@ impl Team {
         Self { pieces, small, count, state: Mutex::new(state), changed, over }
     }
 
+    /// Rows of the largest piece.
+    pub(super) fn rows(&self) -> usize {
+        self.pieces.iter().map(|piece| piece.pencil.order()).max().unwrap_or(0)
+    }
+
     /// How many pieces have a kernel.
     pub(super) fn kernels(&self) -> usize {
         self.pieces.iter().filter(|piece| piece.pencil.kernel).count()

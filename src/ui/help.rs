@@ -38,6 +38,8 @@ fn rows(ascii: bool) -> Vec<Row> {
     rows
 }
 
+/// Columns of labels on screens that are too narrow for the longest.
+const LABEL: usize = 16;
 /// Columns between two columns of keys.
 const GAP: u16 = 3;
 
@@ -47,6 +49,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let widest = |of: fn(&Row) -> usize| rows.iter().map(of).max().unwrap_or(0);
     let keys = widest(|row| if let Row::Keys(keys, _) = row { text::width(keys) } else { 0 });
     let about = widest(|row| if let Row::Keys(_, about) = row { text::width(about) } else { 0 });
+    // Where there is little room the longest labels reach into what the others leave for words.
+    let keys = if keys + about + 8 > pane.width() as usize { keys.min(LABEL) } else { keys };
     let one = (keys + about + 4) as u16;
     let room = (pane.height().saturating_sub(2) as usize).max(1);
     let across = rows.len().div_ceil(room).min((pane.width().saturating_sub(4) / (one + GAP)) as usize).max(1);
@@ -66,8 +70,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
                 pane.put(x, y, heading, Role::Strong);
             }
             Row::Keys(label, about) => {
-                pane.put(x + 2, y, label, Role::Train);
-                let at = x + 4 + keys as u16;
+                let end = pane.put(x + 2, y, label, Role::Train);
+                let at = (x + 4 + keys as u16).max(end + 2);
                 pane.put(at, y, &text::fit(about, wide.saturating_sub(at + 2) as usize), Role::Plain);
             }
             Row::Gap => {}

@@ -10,7 +10,13 @@
 use ratatui::layout::Rect;
 
 use super::{help::frame, look::Role, pane::Pane, text};
-use crate::workbench::{State, journal::Weight};
+use crate::workbench::{
+    State,
+    journal::{Line, Weight},
+};
+
+/// Columns of the time and the weight.
+const LEFT: u16 = 22;
 
 /// Draws the box, scrolled down by so many lines.
 pub(super) fn draw(state: &State, scroll: usize, pane: &mut Pane<'_>) {
@@ -22,23 +28,42 @@ pub(super) fn draw(state: &State, scroll: usize, pane: &mut Pane<'_>) {
     frame(&mut pane, " Journal ");
     let journal = &state.journal;
     let rows = (high as usize).saturating_sub(2);
-    if journal.is_empty() {
+    if journal.is_empty() || rows == 0 {
         pane.put(2, 1, "nothing was told yet", Role::Faint);
         return;
     }
-    let first = scroll.min(journal.len().saturating_sub(rows));
-    for (y, line) in (1..).zip(journal.newest().skip(first).take(rows)) {
+    let lines: Vec<&Line> = journal.newest().collect();
+    let room = (wide as usize).saturating_sub(2 + LEFT as usize + 2);
+    let texts: Vec<Vec<String>> = lines.iter().map(|line| text::wrap(&line.text, room)).collect();
+    // Not further than to where the oldest line stands at the bottom.
+    let mut left = rows;
+    let fits = |high: &usize| {
+        let fits = *high <= left;
+        left -= left.min(*high);
+        fits
+    };
+    let last = lines.len() - texts.iter().rev().map(|text| text.len().max(1)).take_while(fits).count();
+    let first = scroll.min(last);
+    let (mut y, mut shown) = (0, 0);
+    for (line, text) in lines.iter().zip(&texts).skip(first) {
         let at = format!("{:9.2} s", line.at.as_secs_f64());
         let (word, role) = match line.weight {
             Weight::Note => ("note", Role::Faint),
             Weight::Warning => ("warning", Role::Warn),
             Weight::Error => ("error", Role::Bad),
         };
-        let x = pane.spans(2, y, [(at.as_str(), Role::Faint), ("  ", Role::Plain)]);
-        pane.put(x, y, word, role);
-        pane.put(x + 9, y, &text::fit(&line.text, (wide as usize).saturating_sub(x as usize + 11)), Role::Plain);
+        let x = pane.spans(2, y + 1, [(at.as_str(), Role::Faint), ("  ", Role::Plain)]);
+        pane.put(x, y + 1, word, role);
+        for (dy, text) in (1..).zip(text.iter().take(rows - y as usize)) {
+            pane.put(2 + LEFT, y + dy, text, Role::Plain);
+        }
+        y += text.len().max(1) as u16;
+        shown += 1;
+        if y as usize >= rows {
+            break;
+        }
     }
-    let below = journal.len().saturating_sub(first + rows);
+    let below = lines.len().saturating_sub(first + shown);
     let gone = match journal.gone() {
         0 => String::new(),
         gone => format!("{gone} older ones are gone  "),

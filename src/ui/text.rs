@@ -27,7 +27,7 @@ pub(super) fn keys(label: &str, ascii: bool) -> String {
     if !ascii {
         return label.to_owned();
     }
-    let words = label.replace("←→", "Left/Right").replace("↑↓", "Up/Down");
+    let words = label.replace("←→↑↓", "Arrows").replace("←→", "Left/Right").replace("↑↓", "Up/Down");
     words.replace('←', "Left").replace('→', "Right").replace('↑', "Up").replace('↓', "Down")
 }
 

@@ -136,6 +136,22 @@ fn the_document_is_written_by_a_key_and_called_off_by_it() {
 }
 
 #[test]
+fn long_lines_of_the_journal_are_wrapped_and_its_oldest_line_can_be_reached() {
+    let mut state = sample::state(sample::full());
+    for at in 0..30 {
+        let text = format!("begin{at} {} end{at}", "and so on ".repeat(at as usize % 7));
+        let line = Line { at: Duration::from_secs(at), weight: Weight::Note, text };
+        update(&mut state, Action::News(Update::Note(line)));
+    }
+    update(&mut state, Action::Journal);
+    let screen = drawn(&state, (60, 18));
+    assert!(screen.contains("begin29") && screen.contains("end29") && screen.contains("more"), "{screen}");
+    update(&mut state, Action::Last);
+    let screen = drawn(&state, (60, 18));
+    assert!(screen.contains("end0") && screen.contains("end1") && !screen.contains("more"), "{screen}");
+}
+
+#[test]
 fn the_journal_is_shown_the_newest_first() {
     let mut state = sample::state(sample::full());
     for (second, weight, text) in [

@@ -75,6 +75,17 @@ fn digest(buffer: &Buffer) -> String {
 }
 
 /// The text of each view in the first look is in snapshots of its own; here stands what the looks make of it.
+/// A question mark of the ASCII frame is one of the other frame, or stands for a character of a name.
+#[test]
+fn what_the_views_draw_has_a_likeness_in_ascii() {
+    for (view, size) in View::ALL.into_iter().flat_map(|view| [SMALL, MEDIUM, LARGE].map(|size| (view, size))) {
+        let state = state_of(view, size, Look { ascii: true, ..Look::default() });
+        let marks = |look: Look| text(&buffer(&state, look, size)).matches('?').count();
+        let (ascii, other) = (marks(Look { ascii: true, ..Look::default() }), marks(Look::default()));
+        assert_eq!(ascii, other, "{view:?} {size:?}");
+    }
+}
+
 #[test]
 fn every_view_in_every_look() {
     let mut said = String::new();

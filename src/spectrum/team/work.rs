@@ -11,7 +11,7 @@ impl Team {
     /// Does it. An error says that the thread was cancelled; another one can then do it.
     pub(super) fn work(&self, work: Work, tools: &mut Tools, poll: &mut Poll) -> Result<(), Advance> {
         let mut undo = Undo { team: self, what: None };
-        tools.largest = self.pieces.iter().map(|piece| piece.pencil.order()).fold(tools.largest, usize::max);
+        tools.largest = tools.largest.max(self.rows());
         match work {
             Work::Place(at, end, again) => {
                 undo.what = Some(Undone::Place(at, again));

@@ -62,6 +62,9 @@ pub(super) fn draw(state: &State, row: &ModelRow, reasons: Reasons<'_>, at: usiz
     if let Some(below) = &said.below {
         pane.spans(x + 2, 0, [("▼ ", Role::Train), (below, Role::Strong)]);
     }
+    if said.percent {
+        pane.put_right(pane.width().saturating_sub(1), 0, "in %", Role::Faint);
+    }
     if said.terms.is_empty() {
         pane.put(1, 1, "no distance at all", Role::Faint);
         return;
