@@ -145,6 +145,6 @@ pub fn remesh(mesh: &Mesh, count: usize, watch: &dyn Watch) -> Result<Mesh, Reme
     let work = Work::new(&surface, ghosts.clone(), length, pulse)?;
     let mesh = work.run(count, watch)?;
     let (points, triangles) = mesh.parts(ghosts);
-    let result = Mesh::new(points.into_iter().map(|p| [p.x, p.y, p.z]).collect(), triangles);
+    let result = Mesh::new(points.into_iter().map(Into::into).collect(), triangles);
     Ok(result.canonical_watched(pulse)?)
 }

@@ -13,7 +13,7 @@ use super::{
     surface::{Surface, first_at_position, scaled},
 };
 use crate::{
-    mesh::Mesh,
+    mesh::{Mesh, vector::sub},
     watch::{Pulse, Stopped},
 };
 
@@ -80,10 +80,7 @@ fn triangles(points: &[[f64; 3]], pulse: &Pulse) -> Result<Vec<[u32; 3]>, Stoppe
     for at in 0..points.len() as u32 {
         tree.nearest(points[at as usize], NEIGHBOURS + 1, &mut found);
         ring.clear();
-        let arm = |ends: &[[f64; 3]], to: u32| {
-            let (from, to) = (ends[at as usize], ends[to as usize]);
-            [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
-        };
+        let arm = |ends: &[[f64; 3]], to: u32| sub(ends[to as usize], ends[at as usize]);
         let others = found.iter().map(|near| near.1).filter(|&other| other != at);
         ring.extend(others.map(|other| (other, arm(points, other), arm(&nudged, other))));
         star::star(&ring, |b, c| triangles.push([at, b, c]));

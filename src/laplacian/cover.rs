@@ -4,7 +4,10 @@ use super::{
     glued::{Glued, NONE},
     surface::Surface,
 };
-use crate::watch::{Pulse, Stopped};
+use crate::{
+    mesh::vector::{cross, dot, sub, unit},
+    watch::{Pulse, Stopped},
+};
 
 /// What is done with the edges that are not between exactly two faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,22 +164,4 @@ fn by_angle(surface: &Surface, (low, high): (u32, u32), sides: &mut [(f64, u32)]
         let by_apex = || apex(&surface.triangles, a.1).cmp(&apex(&surface.triangles, b.1));
         a.0.total_cmp(&b.0).then_with(by_apex).then(a.1.cmp(&b.1))
     });
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// The vector over its length; zero stays zero.
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    let length = dot(a, a).sqrt();
-    if length > 0.0 { a.map(|x| x / length) } else { [0.0; 3] }
 }

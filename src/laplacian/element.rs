@@ -1,5 +1,7 @@
 //! One triangle: its area and the cotangents of its angles.
 
+use crate::mesh::vector::{cross, dot, length, sub};
+
 /// Below this ratio of a triangle's height to its longest edge its metric is mollified. Areas and cotangents of
 /// flatter triangles would carry errors above 1e-9.
 pub(super) const FLAT: f64 = 1e-7;
@@ -21,17 +23,17 @@ pub(super) struct Element {
 /// The metric of the triangle with these corners. `floor` is the smallest length that a triangle without any extent is
 /// given.
 pub(super) fn element(corners: [[f64; 3]; 3], floor: f64) -> Element {
-    let edges = [1, 2, 0].map(|at: usize| difference(corners[(at + 1) % 3], corners[at]));
+    let edges = [1, 2, 0].map(|at: usize| sub(corners[(at + 1) % 3], corners[at]));
     let longest = edges.iter().map(|&edge| dot(edge, edge)).fold(0.0, f64::max);
     // The cross product of the two shorter edges loses the least to cancellation.
     let apex = (0..3).max_by(|&a, &b| dot(edges[a], edges[a]).total_cmp(&dot(edges[b], edges[b]))).unwrap_or(0);
     let normal = cross(edges[(apex + 1) % 3], edges[(apex + 2) % 3]);
-    let twice = dot(normal, normal).sqrt();
+    let twice = length(normal);
     if twice > FLAT * longest {
         let cotangents = [0, 1, 2].map(|at: usize| -dot(edges[(at + 1) % 3], edges[(at + 2) % 3]) / twice);
         return Element { area: 0.5 * twice, cotangents, mollified: false };
     }
-    mollified(edges.map(|edge| dot(edge, edge).sqrt()), floor)
+    mollified(edges.map(length), floor)
 }
 
 /// Intrinsic mollification (Sharp and Crane 2020, § 4.5) of one triangle: the smallest length that, added to its three
@@ -62,18 +64,6 @@ fn heron(mut lengths: [f64; 3]) -> f64 {
     lengths.sort_by(|a, b| b.total_cmp(a));
     let [a, b, c] = lengths;
     0.25 * ((a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c))).max(0.0).sqrt()
-}
-
-fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
@@ -107,10 +97,7 @@ mod tests {
     fn mollified_and_plain_agree_on_a_good_triangle() {
         let corners = [[0.1, 0.2, 0.0], [1.3, -0.2, 0.4], [0.3, 0.9, 0.1]];
         let plain = element(corners, 1e-3);
-        let lengths = [1, 2, 0].map(|at: usize| {
-            let edge = difference(corners[(at + 1) % 3], corners[at]);
-            dot(edge, edge).sqrt()
-        });
+        let lengths = [1, 2, 0].map(|at: usize| length(sub(corners[(at + 1) % 3], corners[at])));
         let area = heron(lengths);
         assert!((plain.area - area).abs() < 1e-14);
     }

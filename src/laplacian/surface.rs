@@ -4,7 +4,10 @@ use std::collections::HashMap;
 
 use super::LaplacianError;
 use crate::{
-    mesh::Mesh,
+    mesh::{
+        Mesh,
+        vector::{length, sub},
+    },
     watch::{Pulse, Stopped},
 };
 
@@ -72,8 +75,7 @@ impl Surface {
 
     /// The distance of two points.
     pub(super) fn distance(&self, a: u32, b: u32) -> f64 {
-        let (a, b) = (self.points[a as usize], self.points[b as usize]);
-        (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+        length(sub(self.points[a as usize], self.points[b as usize]))
     }
 
     /// Connected components of the points through triangles, numbered by their first point, and how many.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::{
     Mesh,
-    vector::{cross, length, sub},
+    vector::{cross, dot, length, sub},
 };
 
 /// Bends the shape by `angle` radians around an arc in the plane of its two longest box sides.
@@ -102,7 +102,7 @@ pub fn rotate(mesh: &Mesh, axis: [f64; 3], angle: f64) -> Mesh {
     let (sin, cos) = angle.sin_cos();
     moved(mesh, |_, point| {
         let turned = cross(axis, point);
-        let along: f64 = (0..3).map(|at| axis[at] * point[at]).sum();
+        let along = dot(axis, point);
         std::array::from_fn(|at| cos * point[at] + sin * turned[at] + (1.0 - cos) * along * axis[at])
     })
 }

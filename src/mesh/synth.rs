@@ -224,7 +224,7 @@ fn lack(surface: &Surface, vertices: usize) -> Option<String> {
 
 impl From<Surface> for Mesh {
     fn from(surface: Surface) -> Self {
-        Self::new(surface.points.iter().map(|p| [p.x, p.y, p.z]).collect(), surface.triangles)
+        Self::new(surface.points.iter().map(|&p| p.into()).collect(), surface.triangles)
     }
 }
 

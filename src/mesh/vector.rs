@@ -15,6 +15,18 @@ pub const fn v(x: f64, y: f64, z: f64) -> V3 {
     V3 { x, y, z }
 }
 
+impl From<[f64; 3]> for V3 {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        v(x, y, z)
+    }
+}
+
+impl From<V3> for [f64; 3] {
+    fn from(V3 { x, y, z }: V3) -> Self {
+        [x, y, z]
+    }
+}
+
 impl Add for V3 {
     type Output = Self;
     fn add(self, o: Self) -> Self {
@@ -75,18 +87,24 @@ impl V3 {
     }
 }
 
-pub(super) fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn length(a: [f64; 3]) -> f64 {
+pub fn length(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
+}
+
+/// The vector over its length; zero stays zero.
+pub fn unit(a: [f64; 3]) -> [f64; 3] {
+    let length = length(a);
+    if length > 0.0 { a.map(|x| x / length) } else { [0.0; 3] }
 }

@@ -8,12 +8,7 @@ use std::ops::Range;
 
 use super::RemeshError;
 use crate::{
-    mesh::{
-        Mesh,
-        by_vertex::ByVertex,
-        halfedge::HalfEdges,
-        vector::{V3, v},
-    },
+    mesh::{Mesh, by_vertex::ByVertex, halfedge::HalfEdges, vector::V3},
     watch::{Pulse, Stopped},
 };
 
@@ -34,7 +29,7 @@ pub(super) fn take(mesh: &Mesh, pulse: &Pulse) -> Result<Input, RemeshError> {
         return Err(RemeshError::NotFinite);
     }
     let mesh = mesh.canonical_watched(pulse)?;
-    let points: Vec<V3> = mesh.vertices().iter().map(|&[x, y, z]| v(x, y, z)).collect();
+    let points: Vec<V3> = mesh.vertices().iter().map(|&p| p.into()).collect();
     let mut triangles = mesh.triangles().to_vec();
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     if triangles.is_empty() {
@@ -53,24 +48,20 @@ pub(super) fn take(mesh: &Mesh, pulse: &Pulse) -> Result<Input, RemeshError> {
     for a in (0..mesh.vertex_slots()).filter(|&a| mesh.has_vertex(a)) {
         pulse.beat(30)?;
         if mesh.degree(a) != degrees[a as usize] as usize {
-            return Err(RemeshError::Vertex { at: place(mesh.point(a)) });
+            return Err(RemeshError::Vertex { at: mesh.point(a).into() });
         }
     }
     for h in 0..mesh.slots() {
         let t = mesh.twin(h);
         pulse.beat(8)?;
         if mesh.apex(h) == mesh.apex(t) {
-            return Err(RemeshError::Doubled { at: place(mesh.point(mesh.start(h))) });
+            return Err(RemeshError::Doubled { at: mesh.point(mesh.start(h)).into() });
         }
         if (h < 3 * faces) != (t < 3 * faces) {
             mesh.mark(h, true);
         }
     }
     Ok(Input { mesh, faces, ghosts })
-}
-
-fn place(p: V3) -> [f64; 3] {
-    [p.x, p.y, p.z]
 }
 
 fn degrees(points: usize, triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
@@ -115,7 +106,7 @@ fn mates(points: &[V3], triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32
                 }
                 _ => {
                     let at = points[a].lerp(points[edge[0].0 as usize], 0.5);
-                    return Err(RemeshError::Edge { faces: edge.len(), at: place(at) });
+                    return Err(RemeshError::Edge { faces: edge.len(), at: at.into() });
                 }
             }
         }
@@ -147,7 +138,7 @@ fn orient(points: &[V3], triangles: &mut [[u32; 3]], mates: &mut [u32], pulse: &
                 match &mut turned[mate as usize / 3] {
                     Some(known) if *known != its => {
                         let at = points[a as usize].lerp(points[b as usize], 0.5);
-                        return Err(RemeshError::OneSided { at: place(at) });
+                        return Err(RemeshError::OneSided { at: at.into() });
                     }
                     Some(_) => {}
                     unknown @ None => {
@@ -185,7 +176,7 @@ fn close(
         for (corner, (x, y)) in [(a, b), (b, c), (c, a)].into_iter().enumerate() {
             let free = mates[3 * face + corner] == NONE;
             if free && std::mem::replace(&mut after[x as usize], y) != NONE {
-                return Err(RemeshError::Vertex { at: place(points[x as usize]) });
+                return Err(RemeshError::Vertex { at: points[x as usize].into() });
             }
         }
     }

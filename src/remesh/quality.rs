@@ -73,7 +73,7 @@ pub fn shape(mesh: &Mesh) -> Shape {
             if seen.insert((a.min(b), a.max(b)))
                 && let Some([p, q, _]) = mesh.corners([a, b, a])
             {
-                let length = (point(p) - point(q)).norm();
+                let length = (V3::from(p) - V3::from(q)).norm();
                 count += 1.0;
                 sum += length;
                 squares += length * length;
@@ -111,7 +111,7 @@ pub fn topology(mesh: &Mesh) -> Topology {
 #[must_use]
 pub fn fidelity(original: &Mesh, result: &Mesh, samples: usize) -> Option<Fidelity> {
     let (low, high) = original.bounding_box()?;
-    let diagonal = (point(high) - point(low)).norm();
+    let diagonal = (V3::from(high) - V3::from(low)).norm();
     let areas = [original.area(), result.area()];
     if areas.iter().any(|area| !area.is_finite() || *area <= 0.0) {
         return None;
@@ -126,12 +126,8 @@ pub fn fidelity(original: &Mesh, result: &Mesh, samples: usize) -> Option<Fideli
     })
 }
 
-fn point([x, y, z]: [f64; 3]) -> V3 {
-    V3 { x, y, z }
-}
-
 fn corners(mesh: &Mesh) -> impl Iterator<Item = [V3; 3]> {
-    mesh.triangles().iter().filter_map(|&triangle| mesh.corners(triangle)).map(|corners| corners.map(point))
+    mesh.triangles().iter().filter_map(|&triangle| mesh.corners(triangle)).map(|corners| corners.map(V3::from))
 }
 
 /// The least angle of a triangle, in degrees.

@@ -4,6 +4,8 @@
 //! become lines, so the triangles with an empty circumcircle are the edges of the convex hull of the inverted
 //! neighbours that have the point on their inner side.
 
+use crate::mesh::vector::dot;
+
 /// The sine below which two directions are one.
 const PARALLEL: f64 = 1e-9;
 
@@ -103,10 +105,6 @@ fn plane(arms: &[[f64; 3]]) -> Option<[[f64; 3]; 2]> {
     let [least, middle, largest] = order;
     (a[middle][middle] > LINE * LINE * a[largest][largest])
         .then_some([vectors[(least + 1) % 3], vectors[(least + 2) % 3]])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]
