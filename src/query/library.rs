@@ -175,11 +175,34 @@ impl Library {
         if let Some(refusal) = facts.survey.refusal() {
             return Err(Missing::Failed(refusal.into()));
         }
-        let name = (facts.geometry, problem);
+        self.made((facts.geometry, problem), count, &|| reading::prepare(file, problem, watch), watch)
+    }
+
+    /// At least `count` eigenvalues of a mesh that is in no file, or all it has: known under its geometry, as if it
+    /// were in one.
+    pub(crate) fn spectrum_of(
+        &self,
+        mesh: &Mesh,
+        problem: Problem,
+        count: usize,
+        watch: &dyn Watch,
+    ) -> Result<Found, Missing> {
+        let prepare = || Ok(problem.prepare(mesh.canonical(), watch)?);
+        self.made((mesh.hash(), problem), count, &prepare, watch)
+    }
+
+    /// The spectrum from memory or the store, else of the mesh that `prepare` makes.
+    fn made(
+        &self,
+        name: (GeometryHash, Problem),
+        count: usize,
+        prepare: &dyn Fn() -> Result<Mesh, Missing>,
+        watch: &dyn Watch,
+    ) -> Result<Found, Missing> {
         if let Some(known) = self.claim(name, count, watch)? {
             return Ok(known);
         }
-        let found = self.find(file, name, count, watch);
+        let found = self.find(name, count, prepare, watch);
         self.memory().solving.remove(&name);
         self.0.solved.notify_all();
         found
@@ -209,9 +232,9 @@ impl Library {
     /// From the store, else solved.
     fn find(
         &self,
-        file: FileAt<'_>,
         name: (GeometryHash, Problem),
         count: usize,
+        prepare: &dyn Fn() -> Result<Mesh, Missing>,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
         let start = Instant::now();
@@ -231,7 +254,7 @@ impl Library {
         }
         let begun_key = key_of("begun");
         let known = self.known_bands(name, stored, &begun_key);
-        let mesh = reading::prepare(file, problem, watch).map_err(|missing| match missing {
+        let mesh = prepare().map_err(|missing| match missing {
             Missing::Failed(reason) => self.refuse(name, &reason),
             other => other,
         })?;

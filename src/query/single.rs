@@ -9,7 +9,7 @@ use super::{
     trace::Trace,
 };
 use crate::{
-    mesh::{Format, GeometryHash, Survey},
+    mesh::{Format, GeometryHash, Mesh, Survey},
     spectrum::{Crew, Spectrum},
     store::Store,
     watch::Watch,
@@ -41,7 +41,8 @@ pub enum SingleError {
     Failed(String),
 }
 
-/// Solves single files, any number at once; with a store, as a study would, so that each profits from the other.
+/// Solves single files and meshes, any number at once; with a store, as a study would, so that each profits from the
+/// other.
 #[derive(Debug)]
 pub struct Singles {
     library: Library,
@@ -52,6 +53,11 @@ impl Singles {
     #[must_use]
     pub fn new(store: Option<Store>) -> Self {
         Self { library: Library::open(store.unwrap_or_else(Store::none), Trace::default(), Path::new("")) }
+    }
+
+    /// Keeps spectra where a study does.
+    pub(super) const fn over(library: Library) -> Self {
+        Self { library }
     }
 
     /// Threads that have no file of their own can help here with those of others.
@@ -74,14 +80,9 @@ impl Singles {
             Err(error) => return Err(failed(&format!("cannot be read: {error}"))),
         };
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
-        let missed = |missing| match missing {
-            Missing::Cancelled => SingleError::Cancelled,
-            Missing::Failed(reason) | Missing::Unread(reason) => failed(&reason),
-        };
-        let (content, facts) =
-            self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missed(missing))?;
+        let (content, facts) = self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missing)?;
         let file = FileAt { path, format, content };
-        let found = self.library.spectrum(file, &facts, problem, count, watch).map_err(missed)?;
+        let found = self.library.spectrum(file, &facts, problem, count, watch)?;
         Ok(Single {
             geometry: facts.geometry,
             survey: facts.survey.clone(),
@@ -89,5 +90,60 @@ impl Singles {
             source: found.source,
             seconds: found.seconds,
         })
+    }
+
+    /// The first `count` eigenvalues, or more, of a mesh that is in no file.
+    ///
+    /// # Errors
+    /// [`SingleError`].
+    pub fn of_mesh(
+        &self,
+        mesh: &Mesh,
+        problem: Problem,
+        count: usize,
+        watch: &dyn Watch,
+    ) -> Result<Arc<Spectrum>, SingleError> {
+        Ok(self.library.spectrum_of(mesh, problem, count, watch)?.spectrum)
+    }
+}
+
+impl From<Missing> for SingleError {
+    fn from(missing: Missing) -> Self {
+        match missing {
+            Missing::Cancelled => Self::Cancelled,
+            Missing::Failed(reason) | Missing::Unread(reason) => Self::Failed(reason.to_string()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        mesh::{self, synth},
+        spectrum::{self, Choice},
+        store::Options,
+        watch::{Unwanted, Unwatched},
+    };
+
+    #[test]
+    fn a_mesh_and_its_file_have_one_spectrum() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.obj");
+        let mesh = synth::generate(&synth::Options { vertices: 400, ..synth::Options::default() }, 0, 0).unwrap();
+        mesh::write::obj(&mesh, &mut std::fs::File::create(&path).unwrap()).unwrap();
+        let open = || Singles::new(Some(Store::open(&folder.path().join("cache"), Options::default())));
+        for problem in [Problem::from(Choice::default()), Problem { remesh: Some(300), choice: Choice::default() }] {
+            assert_eq!(open().of_mesh(&mesh, problem, 20, &Unwanted).unwrap_err(), SingleError::Cancelled);
+            let found = open().of_mesh(&mesh, problem, 20, &Unwatched).unwrap();
+            let prepared = problem.prepare(mesh.canonical(), &Unwatched).unwrap();
+            let direct = spectrum::solve(&prepared, problem.choice, 20, &[], &Unwatched).unwrap();
+            assert_eq!(found.eigenvalues(), direct.eigenvalues());
+            let of_file = open().solve(&path, problem, 20, &Unwatched).unwrap();
+            assert_eq!((of_file.source, of_file.spectrum.eigenvalues()), (Source::Disk, found.eigenvalues()));
+        }
+        let point = Mesh::new(vec![[0.0; 3]], Vec::new());
+        let refused = open().of_mesh(&point, Choice::default().into(), 20, &Unwatched).unwrap_err();
+        assert!(matches!(refused, SingleError::Failed(_)), "{refused}");
     }
 }

@@ -36,9 +36,6 @@ mod tuned;
 pub mod variation;
 mod write;
 
-/// Vertices of the paper's re-meshed models.
-pub const REMESHED: usize = 10_000;
-
 /// One of the paper's spectra.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Variant {
@@ -95,7 +92,7 @@ impl Variant {
     #[must_use]
     pub fn settings(self, base: &Settings) -> Settings {
         let normalisation = if self.normalised { Normalisation::Max } else { Normalisation::None };
-        let remesh = self.remeshed.then(|| base.remesh.unwrap_or(REMESHED));
+        let remesh = self.remeshed.then(|| base.remesh.unwrap_or(crate::remesh::USUAL));
         Settings { operator: self.operator, normalisation, remesh, ..base.clone() }
     }
 }
@@ -220,8 +217,8 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
     }
     host.set(base.clone());
     if let Some(path) = shown {
-        let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(REMESHED));
-        found.variation.variants = variation::of_file(&path, choice, vertices, host.threads(), watch)
+        let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(crate::remesh::USUAL));
+        found.variation.variants = variation::of_file(&host.singles(), &path, choice, vertices, host.threads(), watch)
             .map_err(|reason| PaperError::Study { spectrum: path.display().to_string(), reason })?;
         if watch.cancelled() {
             return Err(Cancelled.into());

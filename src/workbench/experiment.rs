@@ -10,8 +10,9 @@ use crate::{
     dataset::Role,
     laplacian::Operator,
     query::{ModelState, Settings, Source},
+    remesh,
     report::paper::{
-        REMESHED, Variant,
+        Variant,
         variation::{EIGENVALUES, Spectra, Variation},
     },
     study::FirstK,
@@ -212,7 +213,7 @@ impl State {
 fn varies(one: &Settings, other: &Settings) -> bool {
     let of = |settings: &Settings| {
         let choice = crate::laplacian::Choice { operator: Operator::Fem, ..settings.choice() };
-        (settings.class, choice, settings.remesh.unwrap_or(REMESHED))
+        (settings.class, choice, settings.remesh.unwrap_or(remesh::USUAL))
     };
     of(one) == of(other)
 }

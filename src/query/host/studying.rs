@@ -9,7 +9,7 @@ use super::{Cancelled, Host, Shown};
 use crate::{
     dataset::Role,
     query::{
-        Answer, Finding, Part, Question,
+        Answer, Finding, Part, Question, Singles,
         inquiry::{Inquiry, Members, Piece},
         library::Failure,
         question::{Asking, Looking, ModelAt},
@@ -22,6 +22,12 @@ use crate::{
 const TICK: Duration = Duration::from_millis(5);
 
 impl Host {
+    /// Solves other files and meshes beside the study, which shares all spectra with them.
+    #[must_use]
+    pub fn singles(&self) -> Singles {
+        Singles::over(self.library.apart())
+    }
+
     /// The models whose spectra are there; none while they cannot make a study (two training models at least).
     pub(crate) fn members(&self) -> Option<Members> {
         let kmax = self.settings.kmax;

@@ -114,10 +114,16 @@ pub(super) fn prepare(file: FileAt<'_>, problem: Problem, watch: &dyn Watch) -> 
     let (path, FileAt { format, content, .. }) = (file.path.to_owned(), file);
     let read = move || load(FileAt { path: &path, format, content }).map(|mesh| mesh.canonical());
     let canonical = aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??;
-    problem.prepare(canonical, watch).map_err(|error| match error {
-        RemeshError::Cancelled => Missing::Cancelled,
-        error => Missing::Failed(error.to_string().into()),
-    })
+    Ok(problem.prepare(canonical, watch)?)
+}
+
+impl From<RemeshError> for Missing {
+    fn from(error: RemeshError) -> Self {
+        match error {
+            RemeshError::Cancelled => Self::Cancelled,
+            error => Self::Failed(error.to_string().into()),
+        }
+    }
 }
 
 /// Why a file is no mesh.

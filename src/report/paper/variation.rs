@@ -1,6 +1,9 @@
 //! Figure 1: how much the spectrum of one shape varies, over variants made of it and over its class.
 
-use std::{path::Path, sync::Mutex};
+use std::{
+    path::Path,
+    sync::{Mutex, OnceLock},
+};
 
 use serde::Serialize;
 
@@ -10,9 +13,8 @@ use crate::{
     figure::{Axis, Dash, Figure, Layer, Mark, Panel, Style},
     laplacian::Operator,
     mesh::{self, Format, Mesh, deform},
-    query::{Answer, ModelRow},
-    remesh::remesh,
-    spectrum::{Choice, Normalisation, solve},
+    query::{Answer, ModelRow, Problem, Singles},
+    spectrum::{Choice, Normalisation},
     study::{Cell, Table},
     watch::{Silent, Watch},
 };
@@ -34,7 +36,7 @@ pub struct Variation {
 }
 
 /// The first eigenvalues of one shape under both operators.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Spectra {
     /// What it is.
     pub name: String,
@@ -48,32 +50,32 @@ pub struct Spectra {
     pub why: Option<String>,
 }
 
-/// A variant that is yet to be solved.
-type Made = (&'static str, Result<Mesh, String>);
+/// A variant: its name, how it is made of the mesh, and to how many vertices it is re-meshed then.
+type Made = (&'static str, fn(&Mesh) -> Mesh, Option<usize>);
 
-/// The variants of a mesh, itself first.
-fn variants(mesh: &Mesh, vertices: usize, watch: &dyn Watch) -> Vec<Made> {
-    let remeshed = |count: usize| remesh(mesh, count, watch).map_err(|error| error.to_string());
-    let quarter = mesh.vertices().len() / 4;
-    vec![
-        ("original", Ok(mesh.clone())),
-        ("rotated", Ok(deform::rotate(mesh, [1.0, 2.0, 3.0], 1.0))),
-        ("scaled by 2", Ok(deform::scale(mesh, 2.0))),
-        ("bent by 60°", Ok(deform::bend(mesh, std::f64::consts::FRAC_PI_3))),
-        ("smoothed", Ok(deform::smooth(mesh, 10))),
-        ("noise, 10 % of an edge", Ok(deform::noise(mesh, 0.1, 1))),
-        ("refined, each face in four", Ok(deform::refine(mesh))),
-        ("simplified to a quarter", remeshed(quarter)),
-        ("re-meshed", remeshed(vertices)),
+/// The variants of a mesh, itself first. A quarter of its vertices may be too few to re-mesh it to.
+fn variants(mesh: &Mesh, vertices: usize) -> [Made; 9] {
+    [
+        ("original", Mesh::clone, None),
+        ("rotated", |mesh| deform::rotate(mesh, [1.0, 2.0, 3.0], 1.0), None),
+        ("scaled by 2", |mesh| deform::scale(mesh, 2.0), None),
+        ("bent by 60°", |mesh| deform::bend(mesh, std::f64::consts::FRAC_PI_3), None),
+        ("smoothed", |mesh| deform::smooth(mesh, 10), None),
+        ("noise, 10 % of an edge", |mesh| deform::noise(mesh, 0.1, 1), None),
+        ("refined, each face in four", deform::refine, None),
+        ("simplified to a quarter", Mesh::clone, Some(mesh.vertices().len() / 4)),
+        ("re-meshed", Mesh::clone, Some(vertices)),
     ]
 }
 
-/// Makes and solves the variants of the mesh in the file at `path`, one of them re-meshed to `vertices`, on `threads`
-/// threads. A variant that cannot be had is there with the reason.
+/// Makes the variants of the mesh in the file at `path`, one of them re-meshed to `vertices`, and solves them on
+/// `threads` threads where `singles` does not know their spectra. A variant that cannot be had is there with the
+/// reason.
 ///
 /// # Errors
 /// When the file cannot be read as a mesh.
 pub fn of_file(
+    singles: &Singles,
     path: &Path,
     base: Choice,
     vertices: usize,
@@ -84,35 +86,40 @@ pub fn of_file(
     let format = Format::of(path).ok_or_else(|| "not a mesh by its name".to_owned())?;
     let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
     let mesh = mesh::read(&bytes, format).map_err(|error| error.to_string())?.canonical();
-    let made = variants(&mesh, vertices, watch);
-    let jobs: Vec<(usize, Operator)> =
-        (0..made.len()).flat_map(|at| [Operator::Fem, Operator::Cot].map(|operator| (at, operator))).collect();
-    let spectra = made.iter().map(|(name, mesh)| Spectra {
-        name: (*name).to_owned(),
-        vertices: mesh.as_ref().map_or(0, |mesh| mesh.vertices().len()),
-        fem: None,
-        cot: None,
-        why: mesh.as_ref().err().cloned(),
-    });
-    let (jobs, spectra) = (Mutex::new(jobs.into_iter()), Mutex::new(spectra.collect::<Vec<_>>()));
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
-                while let Some((at, operator)) = jobs.lock().ok().and_then(|mut jobs| jobs.next()) {
-                    let Ok(mesh) = &made[at].1 else { continue };
-                    let choice = Choice::new(operator, base.mass)
-                        .with_boundary(base.boundary)
-                        .with_triangulation(base.triangulation);
-                    let found = solve(&mesh.canonical(), choice, EIGENVALUES, &[], watch);
-                    let Ok(mut spectra) = spectra.lock() else { return };
-                    let row = &mut spectra[at];
-                    match found {
-                        Ok(found) => row.put(operator, &found.eigenvalues()),
-                        Err(error) => row.why = Some(error.to_string()),
-                    }
+    let variants = variants(&mesh, vertices);
+    let spectra = variants.map(|(name, ..)| Spectra { name: name.to_owned(), ..Spectra::default() });
+    let made: [OnceLock<Mesh>; 9] = Default::default();
+    let jobs = (0..made.len()).flat_map(|at| [Operator::Fem, Operator::Cot].map(|operator| (at, operator)));
+    let (jobs, spectra) = (Mutex::new(jobs), Mutex::new(spectra.to_vec()));
+    let next = || jobs.lock().ok().and_then(|mut jobs| jobs.next());
+    let work = || {
+        while let Some((at, operator)) = next() {
+            let (_, make, remesh) = variants[at];
+            let made = made[at].get_or_init(|| make(&mesh));
+            let choice =
+                Choice::new(operator, base.mass).with_boundary(base.boundary).with_triangulation(base.triangulation);
+            let found = singles.of_mesh(made, Problem { remesh, choice }, EIGENVALUES, watch);
+            let Ok(mut spectra) = spectra.lock() else { return };
+            let row = &mut spectra[at];
+            match (found, remesh) {
+                (Ok(found), _) => {
+                    row.vertices = remesh.unwrap_or(made.vertices().len());
+                    row.put(operator, &found.eigenvalues());
                 }
-            });
+                (Err(error), None) => {
+                    row.vertices = made.vertices().len();
+                    row.why = Some(error.to_string());
+                }
+                (Err(error), Some(_)) => row.why = Some(error.to_string()),
+            }
         }
+    };
+    // The calling thread is one of them.
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            let _ = std::thread::Builder::new().name("variant".into()).spawn_scoped(scope, work);
+        }
+        work();
     });
     spectra.into_inner().map_err(|_| "internal error, please report it".to_owned())
 }

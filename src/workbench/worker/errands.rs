@@ -11,7 +11,8 @@ use super::{Desk, Message};
 use crate::{
     dataset::Role,
     query::Settings,
-    report::paper::{self, REMESHED, variation},
+    remesh,
+    report::paper::{self, variation},
     watch::Watch as _,
     workbench::{
         experiment::{Told, Varied},
@@ -56,12 +57,13 @@ impl Desk<'_> {
         let class = settings.class;
         let first = answer.models.iter().find(|model| model.class as usize == class && model.role == Role::Train);
         let path = first.map(|model| model.path.clone());
+        let singles = self.host.singles();
         let (recall, outbox, threads) = (self.varying.clone(), self.outbox.clone(), self.setup.threads);
         let begun = std::thread::Builder::new().name("variants".into()).spawn(move || {
-            let vertices = settings.remesh.unwrap_or(REMESHED);
+            let vertices = settings.remesh.unwrap_or(remesh::USUAL);
             let variants = match path {
                 Some(path) => catch_unwind(AssertUnwindSafe(|| {
-                    variation::of_file(&path, settings.choice(), vertices, threads, &recall)
+                    variation::of_file(&singles, &path, settings.choice(), vertices, threads, &recall)
                 }))
                 .unwrap_or_else(|_| Err("internal error in the variants, please report it".to_owned())),
                 None => Err("the class has no training model".to_owned()),
