@@ -48,6 +48,7 @@ mod part;
 mod pencil;
 mod poll;
 #[cfg(test)]
+#[path = "../tests/operators/shapes.rs"]
 mod shapes;
 mod slice;
 mod small;

@@ -20,7 +20,6 @@ use eigenselect::{
 use rustix::time::{ClockId, clock_gettime};
 
 #[path = "operators/shapes.rs"]
-#[allow(dead_code)] // Other tests use the rest.
 mod shapes;
 
 const MOST: Duration = Duration::from_millis(50);

@@ -28,7 +28,7 @@ fn moved(mesh: &Mesh, place: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
 
 /// A shape without any symmetry.
 pub(super) fn potato(levels: usize) -> Mesh {
-    moved(&shapes::sphere(levels), |[x, y, z]| {
+    moved(&shapes::icosphere(levels), |[x, y, z]| {
         let radius = 1.0 + 0.3 * (2.3 * x + 0.4).sin() * (1.7 * y - z).cos() + 0.1 * (5.0 * z + x).sin();
         [radius * x, 0.8 * radius * y, 1.3 * radius * z]
     })
@@ -44,7 +44,7 @@ fn the_sphere_has_its_multiplicities_and_converges_with_the_square_of_the_edges(
     let expected: Vec<f64> = (0..9_usize).flat_map(|l| vec![(l * (l + 1)) as f64; 2 * l + 1]).collect();
     for choice in [FEM, LUMPED] {
         let errors: Vec<f64> =
-            (3..=5).map(|levels| worst(&values(&shapes::sphere(levels), choice, 81), &expected)).collect();
+            (3..=5).map(|levels| worst(&values(&shapes::icosphere(levels), choice, 81), &expected)).collect();
         for pair in errors.windows(2) {
             let order = (pair[0] / pair[1]).log2();
             assert!((1.8..2.2).contains(&order), "{errors:?}");
@@ -55,7 +55,7 @@ fn the_sphere_has_its_multiplicities_and_converges_with_the_square_of_the_edges(
 
 #[test]
 fn two_spheres_that_touch_in_a_vertex_have_eigenvalues_between_those_of_two_that_do_not() {
-    let ball = shapes::sphere(3);
+    let ball = shapes::icosphere(3);
     let (points, faces) = (ball.vertices(), ball.triangles());
     // The second sphere is the first one turned about the vertex 0, so that they have it in common.
     let [x, y, z] = points[0];
@@ -81,7 +81,7 @@ fn two_spheres_that_touch_in_a_vertex_have_eigenvalues_between_those_of_two_that
 
 #[test]
 fn eigenvalues_that_a_perturbation_has_parted_by_a_billionth_are_all_found() {
-    let ball = shapes::sphere(4);
+    let ball = shapes::icosphere(4);
     let nearly = moved(&ball, |[x, y, z]| [x * (1.0 + 1e-9), y, z * (1.0 - 1e-9 * x)]);
     for choice in [FEM, LUMPED] {
         let (even, parted) = (values(&ball, choice, 300), values(&nearly, choice, 300));
@@ -99,7 +99,7 @@ fn a_rectangle_has_the_neumann_spectrum() {
     expected.sort_by(f64::total_cmp);
     let expected: Vec<f64> = expected[..60].iter().map(|square| square * pi * pi).collect();
     let errors: Vec<f64> =
-        [16, 32, 64].iter().map(|&b| worst(&values(&shapes::grid(2 * b, b), FEM, 60), &expected)).collect();
+        [16, 32, 64].iter().map(|&b| worst(&values(&shapes::rectangle(2 * b, b), FEM, 60), &expected)).collect();
     for pair in errors.windows(2) {
         assert!((1.8..2.2).contains(&(pair[0] / pair[1]).log2()), "{errors:?}");
     }
@@ -234,7 +234,7 @@ fn dense_and_sparse_agree() {
 
 #[test]
 fn pieces_are_merged() {
-    let (large, small) = (potato(3), shapes::sphere(1));
+    let (large, small) = (potato(3), shapes::icosphere(1));
     let copies = 12;
     let mut points = Vec::new();
     let mut triangles = Vec::new();
@@ -295,7 +295,7 @@ fn a_piece_that_is_held_has_no_zero() {
         (1..40).flat_map(|i| (1..40).map(move |j| square * (f64::from(i * i) / 4.0 + f64::from(j * j)))).collect();
     expected.sort_by(f64::total_cmp);
     let held = |b: usize| {
-        let mut laplacian = assemble(&shapes::grid(2 * b, b), Choice::default()).unwrap();
+        let mut laplacian = assemble(&shapes::rectangle(2 * b, b), Choice::default()).unwrap();
         let inside = |row: &u32| {
             let (x, y) = (*row as usize % (2 * b + 1), *row as usize / (2 * b + 1));
             x > 0 && x < 2 * b && y > 0 && y < b
@@ -317,7 +317,7 @@ fn a_piece_that_is_held_has_no_zero() {
 
 #[test]
 fn eigenvectors_are_orthonormal_and_their_residuals_true() {
-    let (potato, sphere, tetrahedron) = (potato(4), shapes::sphere(3), shapes::sphere(0));
+    let (potato, sphere, tetrahedron) = (potato(4), shapes::icosphere(3), shapes::icosphere(0));
     let mut points = Vec::new();
     let mut triangles = Vec::new();
     for (copy, part) in [&potato, &tetrahedron, &sphere].into_iter().enumerate() {

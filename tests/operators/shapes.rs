@@ -1,8 +1,14 @@
-//! Shapes whose spectra are known.
+//! Shapes whose spectra are known, for tests of the library from within and from without.
 
-use std::{collections::HashMap, f64::consts::TAU};
+// Each test uses some.
+#![allow(dead_code)]
 
-use eigenselect::mesh::Mesh;
+use std::{
+    collections::HashMap,
+    f64::consts::{PI, TAU},
+};
+
+use super::Mesh;
 
 /// The same faces on other points.
 pub fn moved(mesh: &Mesh, place: impl Fn([f64; 3]) -> [f64; 3]) -> Mesh {
@@ -36,6 +42,29 @@ pub fn rectangle(a: usize, b: usize) -> Mesh {
         for x in 0..a {
             let [p, q, r, s] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
             triangles.extend(if (x + y) % 2 == 0 { [[p, q, r], [p, r, s]] } else { [[p, q, s], [q, r, s]] });
+        }
+    }
+    Mesh::new(points, triangles)
+}
+
+/// The side of a prism over a regular polygon, in as many rows, of circumference 3 and height 1: flat inside, so
+/// isometric to a cylinder.
+pub fn prism(sides: usize, rows: usize) -> Mesh {
+    let radius = 1.5 / sides as f64 / (PI / sides as f64).sin();
+    let points = (0..=rows)
+        .flat_map(|y| {
+            (0..sides).map(move |x| {
+                let (sine, cosine) = (TAU * x as f64 / sides as f64).sin_cos();
+                [radius * cosine, radius * sine, y as f64 / rows as f64]
+            })
+        })
+        .collect();
+    let at = |x: usize, y: usize| (y * sides + x % sides) as u32;
+    let mut triangles = Vec::new();
+    for y in 0..rows {
+        for x in 0..sides {
+            let [p, q, r, s] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            triangles.extend([[p, q, r], [p, r, s]]);
         }
     }
     Mesh::new(points, triangles)

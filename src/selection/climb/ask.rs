@@ -6,15 +6,13 @@ use super::{
     block::{Block, LANES, LEAST, Losses, MOST},
     ground::{Ground, POLL},
     race::{Mark, Outcome},
+    row::NEAR,
     sketch::{self, Sketch},
 };
 use crate::{
     metrics::{Cancelled, Term},
     watch::Watch,
 };
-
-/// Strangers looked at in a brief evaluation.
-const BRIEF: usize = 48;
 
 /// Adds up the losses of all models asked for each of the candidates `indices`, a vector of them at a time, until none
 /// of those can stay below the bound.
@@ -100,7 +98,7 @@ impl<T: Term> Ask<'_, T> {
         for (nth, models) in asked.chunks(POLL).enumerate() {
             for &model in models {
                 let row = &rows[model as usize];
-                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, BRIEF);
+                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, NEAR);
                 add_lanes(&mut least, &losses);
                 if !sure {
                     unsure.push((model, losses));

@@ -37,16 +37,10 @@ pub(super) struct Block<S: Simd> {
 }
 
 impl<S: Simd> Block<S> {
-    /// For the features `indices` (from 1), at most as many as there are lanes. Lanes left over repeat the last one.
+    /// For the features `indices` (from 1), at most as many as there are lanes.
     #[inline(always)]
     pub(super) fn new(columns: &Columns, indices: &[u32], models: usize) -> Self {
-        let mut values = vec![0.0; S::F64_LANES * models];
-        for lane in 0..S::F64_LANES {
-            let column = columns.col(indices[lane.min(indices.len() - 1)] as usize - 1);
-            for (value, &of_model) in values[lane..].iter_mut().step_by(S::F64_LANES).zip(column) {
-                *value = of_model;
-            }
-        }
+        let values = side_by_side(columns, indices, S::F64_LANES, models);
         Self { values: S::as_simd_f64s(&values).0.to_vec(), relatives: Vec::new(), before: Vec::new() }
     }
 
@@ -193,6 +187,18 @@ impl<S: Simd> Block<S> {
     fn matter(&self, simd: S, at: usize) -> S::m64s {
         simd.less_than_u64s(self.before[at], simd.splat_u64s((self.relatives.len() - at) as u64))
     }
+}
+
+/// The features `indices` (from 1) of all models, model by model in so many lanes. Lanes left over repeat the last one.
+pub(super) fn side_by_side(columns: &Columns, indices: &[u32], lanes: usize, models: usize) -> Vec<f64> {
+    let mut values = vec![0.0; lanes * models];
+    for lane in 0..lanes {
+        let column = columns.col(indices[lane.min(indices.len() - 1)] as usize - 1);
+        for (value, &of_model) in values[lane..].iter_mut().step_by(lanes).zip(column) {
+            *value = of_model;
+        }
+    }
+    values
 }
 
 #[inline(always)]

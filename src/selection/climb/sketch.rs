@@ -11,6 +11,7 @@ use pulp::Simd;
 
 use super::{
     Cost,
+    block::side_by_side,
     judge::Judge,
     row::{NEAR, Row},
 };
@@ -41,17 +42,10 @@ impl<S: Simd> Sketch<S> {
         S::F32_LANES == 2 * S::F64_LANES && cfg!(target_endian = "little") && judge.most_relevant() + NEAR < RANKS
     }
 
-    /// For the features `indices` (from 1), at most as many as there are lanes. Lanes left over repeat the last one.
+    /// For the features `indices` (from 1), at most as many as there are lanes.
     #[inline(always)]
     pub(super) fn new(simd: S, columns: &Columns, indices: &[u32], models: usize) -> Self {
-        let lanes = 2 * S::F64_LANES;
-        let mut values = vec![0.0; lanes * models];
-        for lane in 0..lanes {
-            let column = columns.col(indices[lane.min(indices.len() - 1)] as usize - 1);
-            for (value, &of_model) in values[lane..].iter_mut().step_by(lanes).zip(column) {
-                *value = of_model;
-            }
-        }
+        let values = side_by_side(columns, indices, 2 * S::F64_LANES, models);
         let (vectors, _) = S::as_simd_f64s(&values);
         let (pairs, _) = vectors.as_chunks::<2>();
         let parity: Vec<u32> = (0..S::F32_LANES as u32).map(|lane| lane % 2).collect();

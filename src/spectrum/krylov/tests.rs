@@ -38,7 +38,7 @@ fn defect(krylov: &Krylov) -> f64 {
 
 #[test]
 fn the_basis_is_orthonormal_and_the_residuals_are_true() {
-    let laplacian = assemble(&shapes::grid(50, 31), Choice::default()).unwrap();
+    let laplacian = assemble(&shapes::rectangle(50, 31), Choice::default()).unwrap();
     let pencil = Pencil::new(&laplacian.matrix).unwrap();
     let mut poll = Poll::new(&Unwatched);
     let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
@@ -85,7 +85,7 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
 
 #[test]
 fn dependent_columns_are_replaced() {
-    let laplacian = assemble(&shapes::grid(20, 20), Choice::default()).unwrap();
+    let laplacian = assemble(&shapes::rectangle(20, 20), Choice::default()).unwrap();
     let pencil = Pencil::new(&laplacian.matrix).unwrap();
     let mut poll = Poll::new(&Unwatched);
     let (mut factor, mut scratch) = (Factor::default(), Scratch::default());

@@ -16,7 +16,7 @@ fn archipelago() -> Mesh {
     let mut points = Vec::new();
     let mut triangles = Vec::new();
     for (at, part) in
-        [potato(4), shapes::sphere(1), potato(3), shapes::grid(30, 17), shapes::sphere(3)].iter().enumerate()
+        [potato(4), shapes::icosphere(1), potato(3), shapes::rectangle(30, 17), shapes::icosphere(3)].iter().enumerate()
     {
         let first = points.len() as u32;
         points.extend(part.vertices().iter().map(|&[x, y, z]| [x + 5.0 * at as f64, y, z]));
@@ -31,10 +31,10 @@ fn helpers_change_no_bit() {
     for (mesh, count) in [
         (potato(4), 300),
         (archipelago(), 250),
-        (shapes::sphere(4), 400),
+        (shapes::icosphere(4), 400),
         (shapes::prism(48, 20), usize::MAX),
         (potato(2), usize::MAX),
-        (shapes::sphere(1), 9),
+        (shapes::icosphere(1), 9),
     ] {
         let alone = solve(&mesh, FEM, count, &[], &Unwatched).unwrap();
         for threads in [1, 2, 3, 5] {
