@@ -23,6 +23,9 @@ fn every_table_and_figure_is_there_and_a_second_run_gives_the_same_bytes() {
     let folder = common::scratch();
     let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
     common::write_data(&data, 3, 5);
+    // Names that Markdown would read as something else, of the class and the model that Figure 1 shows.
+    fs::rename(data.join("class0/m0.off"), data.join("class0/m*0_<b>.off")).unwrap();
+    fs::rename(data.join("class0"), data.join("c*a_<i>")).unwrap();
     let (first, second) = (folder.path().join("first"), folder.path().join("second"));
     let output = report(&data, &first, &cache);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -34,6 +37,10 @@ fn every_table_and_figure_is_there_and_a_second_run_gives_the_same_bytes() {
     }
 
     let text = String::from_utf8(first["paper.md"].clone()).unwrap();
+    for name in [r"c\*a\_\<i\>", r"m\*0\_\<b\>"] {
+        assert!(text.contains(name), "no {name}");
+    }
+    assert!(!text.contains("<i>") && !text.contains("<b>"), "names are not taken for markup");
     for wanted in
         ["Table 1", "Table 2", "Table 3", "Table 4", "Figure 1", "Figure 3", "Figure 4", "Figure 5", "Figure 6"]
     {

@@ -4,7 +4,7 @@ use super::{Head, Rows, Section, Variant};
 use crate::{
     figure::{Dash, Figure, Mark, Style},
     laplacian::Operator,
-    report::figures as drawn,
+    report::{figures as drawn, markdown},
     spectrum::Normalisation,
     study::{Curve, Mark as Selected},
 };
@@ -91,7 +91,7 @@ fn indices(head: &Head, best: &Rows, shown: &[usize]) -> String {
     let of = |class: usize| best.marks.get(class).map_or(&[][..], Vec::as_slice);
     let named = |&class: &usize| {
         let (count, last) = (of(class).len(), of(class).iter().map(|mark| mark.index).max()?);
-        Some(format!("{} has {count}, the last of index {last}", head.classes.get(class)?))
+        Some(format!("{} has {count}, the last of index {last}", markdown::escape(head.classes.get(class)?)))
     };
     let named: Vec<String> = shown.iter().filter_map(named).collect();
     let others = |class: usize| shown.iter().filter(move |&&other| other != class).flat_map(|&other| of(other));

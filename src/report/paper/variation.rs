@@ -14,6 +14,7 @@ use crate::{
     laplacian::Operator,
     mesh::{self, Format, Mesh, deform},
     query::{Answer, ModelRow, Problem, Singles},
+    report::{figures, markdown},
     spectrum::{Choice, Normalisation},
     study::{Cell, Table},
     watch::{Silent, Watch},
@@ -137,7 +138,7 @@ impl Spectra {
     pub(super) fn put(&mut self, operator: Operator, eigenvalues: &[f64]) {
         let count = EIGENVALUES.min(eigenvalues.len());
         match operator {
-            Operator::Fem => self.fem = Some(Normalisation::Max.apply(eigenvalues, 1.0, count)),
+            Operator::Fem => self.fem = Some(normalisation(operator).apply(eigenvalues, 1.0, count)),
             Operator::Cot => self.cot = Some(eigenvalues[..count].to_vec()),
         }
     }
@@ -149,6 +150,14 @@ impl Spectra {
             Operator::Fem => self.fem.as_deref(),
             Operator::Cot => self.cot.as_deref(),
         }
+    }
+}
+
+/// How the eigenvalues of an operator are shown.
+const fn normalisation(operator: Operator) -> Normalisation {
+    match operator {
+        Operator::Fem => Normalisation::Max,
+        Operator::Cot => Normalisation::None,
     }
 }
 
@@ -228,7 +237,7 @@ impl Variation {
         let panel = |title: String, operator: Operator, layers: Vec<Layer>| Panel {
             title,
             x: Axis::linear("index k").within(0.0, EIGENVALUES as f64),
-            y: Axis::linear(if operator == Operator::Fem { "λ/max" } else { "λ" }),
+            y: Axis::linear(figures::unit(normalisation(operator))),
             layers,
         };
         let changed = |title: &str, operator: Operator| Panel {
@@ -250,7 +259,7 @@ impl Variation {
     }
 
     pub(super) fn section(&self) -> Section {
-        let (model, class) = (&self.model, &self.class);
+        let (model, class) = (markdown::escape(&self.model), markdown::escape(&self.class));
         let mut words = vec![format!(
             "(a, b) The first {EIGENVALUES} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
              them, cot as they are. (c, d) The same as a change against the original. (e, f) {model} among the training \
