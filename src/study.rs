@@ -10,8 +10,8 @@ pub use self::{
     climbed::{Climbed, climbed},
     first_k::{Curve, FirstK, first_k},
     honest::{
-        Decisions, Honest, HonestPair, HonestRow, Interval, Learner, Plan, Recipe, SPLITS, Splits, Spread, Tuned,
-        TunedRow, honest, mcnemar, paired, splits, tuned,
+        Decisions, Honest, HonestPair, HonestRow, Interval, Learner, Plan, Recipe, SPLITS, Searched, Splits, Spread,
+        Tuned, TunedRow, honest, mcnemar, paired, splits, tuned,
     },
     retrieval::{Draws, Gate, Pick, ReadAs, Reading, Retrieved, Scheme, Sources, retrieval},
     tables::{Cell, Table, tables, tables_of},

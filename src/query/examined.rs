@@ -92,7 +92,7 @@ pub(crate) fn split_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
     let knobs = Knobs::get(db);
     let (distance, rounds) = (knobs.distance(db), knobs.rounds(db));
     let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
-    let how = format!("{distance:?} {rounds} {SPLITS}");
+    let how = format!("{distance:?} {rounds} {SPLITS} with searches");
     let key = Key::new("splits").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
     let store = db.library().store();
     trace(db).executed(Query::HonestRows);

@@ -20,10 +20,9 @@ use crate::{
     figure::Figure,
     laplacian::Operator,
     query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
-    selection::Search,
     spectrum::Normalisation,
     study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Splits, Table, Tuned},
-    watch::{Silent, Watch},
+    watch::Watch,
 };
 
 mod differences;
@@ -120,21 +119,8 @@ pub struct Rows {
     pub boosted: Arc<Boosted>,
     /// Figures 4 and 5.
     pub marks: Arc<Vec<Vec<Mark>>>,
-    /// The same tables on other splits of the models, for spectra that the paper has.
+    /// The same tables on other splits of the models and by other readings, for spectra that the paper has.
     pub splits: Option<Arc<Splits>>,
-    /// Hill climbing by other moves than the paper's, for the same.
-    pub searches: Vec<Searched>,
-}
-
-/// Hill climbing by other moves.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Searched {
-    /// Which moves.
-    pub search: Search,
-    /// ε on D of the climb for ε.
-    pub error: f64,
-    /// Mean ADR on D of the climb for it.
-    pub adr: f64,
 }
 
 /// Why there is no document.
@@ -191,8 +177,11 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
         host.set(variant.settings(base));
         let answer = host.run(&Turn { watch, at: turn, of: turns })?;
         let mut rows = Rows::new(variant, &answer)?;
-        if variant.column().is_some() {
-            rows.examine(host, watch)?;
+        // What else the unknown split and the paper's words allow, where there is something to compare it with.
+        if variant.column().is_some()
+            && let Ok(Finding::Splits(splits)) = host.find(Question::Splits, watch)?
+        {
+            rows.splits = Some(splits);
         }
         found.rows.push(rows);
         if variant == Variant::BEST
@@ -297,39 +286,7 @@ impl Rows {
         };
         let members = |role| answer.members.iter().filter(|&&at| answer.models[at].role == role).count();
         let (train, query) = (members(Role::Train), members(Role::Query));
-        let (splits, searches) = (None, Vec::new());
-        Ok(Self {
-            spectrum,
-            name,
-            train,
-            query,
-            out,
-            first_k,
-            climb_error,
-            climb_adr,
-            boosted,
-            marks,
-            splits,
-            searches,
-        })
-    }
-
-    /// What else the paper's words and its unknown split allow; the host is left at the parameters that it has.
-    fn examine(&mut self, host: &mut Host, watch: &dyn Watch) -> Result<(), Cancelled> {
-        if let Ok(Finding::Splits(splits)) = host.find(Question::Splits, watch)? {
-            self.splits = Some(splits);
-        }
-        let settings = host.settings().clone();
-        for search in Search::ALL.into_iter().filter(|&search| search != settings.search) {
-            host.set(Settings { search, ..settings.clone() });
-            let answer = host.run(&Silent(watch))?;
-            if let (Some(error), Some(adr)) = (&answer.climb_error.value, &answer.climb_adr.value) {
-                self.searches.push(Searched { search, error: error.error.train, adr: adr.adr.train });
-            }
-        }
-        host.set(settings);
-        host.run(&Silent(watch))?;
-        Ok(())
+        Ok(Self { spectrum, name, train, query, out, first_k, climb_error, climb_adr, boosted, marks, splits: None })
     }
 }
 

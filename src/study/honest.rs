@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 pub use self::{
     learner::Learner,
     nested::honest,
-    splits::{Decisions, SPLITS, Splits, Spread, splits},
+    splits::{Decisions, SPLITS, Searched, Splits, Spread, splits},
     test::{mcnemar, paired},
     tuned::{Recipe, Tuned, TunedRow, tuned},
 };

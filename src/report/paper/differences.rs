@@ -8,7 +8,7 @@ use super::{
 use crate::{
     laplacian::Operator,
     selection::Search,
-    study::{Cell, SPLITS, Spread, Table},
+    study::{Cell, SPLITS, Searched, Spread, Table},
 };
 
 /// Differences from the paper beyond this are named in words.
@@ -32,16 +32,16 @@ struct Reading {
 
 /// The other readings of a table's figure.
 fn others(plan: &Plan, rows: &Rows) -> Vec<Reading> {
-    let climbs = |value: fn(&super::Searched) -> f64| {
-        let reading = move |searched: &super::Searched| {
+    let climbs = |value: fn(&Searched) -> f64| {
+        let reading = move |searched: &Searched| {
             let name = match searched.search {
-                Search::Strict => "moves that lower the cost alone",
-                Search::Level => "moves over level ground, too",
-                Search::Beam => "a beam of selections",
+                Search::Strict => return None,
+                Search::Level => "over level ground",
+                Search::Beam => "with a beam",
             };
-            Reading { name, value: value(searched) }
+            Some(Reading { name, value: value(searched) })
         };
-        rows.searches.iter().map(reading).collect()
+        rows.splits.iter().flat_map(|splits| &splits.searches).filter_map(reading).collect()
     };
     match plan.row {
         Row::FirstKError | Row::FirstKAdr => Vec::new(),
@@ -64,11 +64,12 @@ fn reason(plan: &Plan, rows: &Rows, known: Published, ours: f64) -> String {
         let verdict = if within { "the split may be why" } else { "the split is not why" };
         reasons.push(format!("{verdict}: other ones give {low:.3} to {high:.3}"));
     }
-    let closer = |reading: &Reading| (reading.value - known.value).abs() < (ours - known.value).abs();
+    // What does not show in print is no closer.
+    let closer = |reading: &Reading| (reading.value - known.value).abs() + ROUNDED < (ours - known.value).abs();
     let closest = others(plan, rows).into_iter().filter(closer);
     let closest = closest.min_by(|a, b| (a.value - known.value).abs().total_cmp(&(b.value - known.value).abs()));
     if let Some(Reading { name, value }) = closest {
-        reasons.push(format!("{name}, it would be {value:.3}"));
+        reasons.push(format!("{name} it would be {value:.3}"));
     }
     if rows.spectrum.remeshed && rows.spectrum.operator == Operator::Cot {
         reasons.push("cot eigenvalues depend on the re-mesher (see above)".to_owned());
@@ -137,6 +138,8 @@ fn words(count: usize, compared: usize, head: &Head, rows: &[Rows]) -> Vec<Strin
 /// What Tables 2 to 4 would have by other readings.
 fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
     let mut cells = Vec::new();
+    // For each reading of a table how many figures it has, and how many of them are near the paper's.
+    let mut tally: Vec<(u32, &str, usize, usize)> = Vec::new();
     for plan in plans {
         for rows in rows {
             let (Some(known), others) = (paper(plan, rows), others(plan, rows)) else { continue };
@@ -158,6 +161,13 @@ fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
             };
             row.extend(searches);
             row.extend(decisions);
+            for reading in std::iter::once(&strict).chain(&others) {
+                let near = usize::from(apart(reading) <= NOTABLE);
+                match tally.iter_mut().find(|(number, name, ..)| (*number, *name) == (plan.number, reading.name)) {
+                    Some((.., all, few)) => (*all, *few) = (*all + 1, *few + near),
+                    None => tally.push((plan.number, reading.name, 1, near)),
+                }
+            }
             // The strict one is first, and taken where others are no closer.
             let all = std::iter::once(&strict).chain(&others);
             let closest = all.min_by(|a, b| apart(a).total_cmp(&apart(b)));
@@ -175,8 +185,15 @@ fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
          not how the ε of Table 3 is: *strict* goes by the greatest p(C|M), *share* by the greatest S as a share of its \
          Σ α, *first* takes the first class with S > 0."
             .to_owned(),
+        format!("Figures within {NOTABLE} of the paper's: {}.", near(&tally)),
     ];
     let table = Table { number: 0, title: title.clone(), columns: columns.map(String::from).to_vec(), rows: cells };
     let some = !table.rows.is_empty();
     some.then(|| Section { heading: title, words, table: Some(("readings".to_owned(), table)), figure: None })
+}
+
+/// How many figures of each table each reading brings near the paper's, in words.
+fn near(tally: &[(u32, &str, usize, usize)]) -> String {
+    let words = tally.iter().map(|(table, name, all, few)| format!("Table {table} {name} {few} of {all}"));
+    words.collect::<Vec<_>>().join("; ")
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::deal::pooled;
 use crate::{
     metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures},
-    selection::{Cost, Ranges, boost, climb, decide},
+    selection::{Cost, Ranges, Search, boost, climb, climb_by, decide},
     study::{boosted, first_k},
     watch::{Silent, Watch},
 };
@@ -28,8 +28,8 @@ pub struct Spread {
     pub high: f64,
 }
 
-/// The figures on D of Tables 1 to 4 over random splits.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// The figures on D of Tables 1 to 4 over random splits, and by other readings of the paper.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Splits {
     /// Least ε of the first k.
     pub first_k_error: Spread,
@@ -43,6 +43,19 @@ pub struct Splits {
     pub climb_adr: Spread,
     /// AdaBoost's other decisions, on D as it is.
     pub decisions: Decisions,
+    /// Hill climbing by each of [`Search::ALL`], on D as it is.
+    pub searches: Vec<Searched>,
+}
+
+/// Hill climbing by certain moves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Searched {
+    /// Which moves.
+    pub search: Search,
+    /// ε on D of the climb for ε.
+    pub error: f64,
+    /// Mean ADR on D of the climb for it.
+    pub adr: f64,
 }
 
 /// ε on D of AdaBoost when its classifiers decide in other ways than by the greatest p(C|M).
@@ -75,6 +88,8 @@ pub fn splits(sample: &Sample, distance: Distance, rounds: usize, watch: &dyn Wa
         Ok([error, climbed(Cost::Error)?.0, boosted, adr, climbed(Cost::Adr)?.1])
     };
     let found: Vec<[f64; 5]> = (0..SPLITS).into_par_iter().map(draw).collect::<Result<_, _>>()?;
+    let searched = |search: Search| searched(sample, distance, search, watch);
+    let searches = Search::ALL.into_par_iter().map(searched).collect::<Result<_, _>>()?;
     let spread = |at: usize| {
         let values = || found.iter().map(|figures| figures[at]);
         Spread {
@@ -90,7 +105,16 @@ pub fn splits(sample: &Sample, distance: Distance, rounds: usize, watch: &dyn Wa
         first_k_adr: spread(3),
         climb_adr: spread(4),
         decisions: decisions(sample, rounds, watch)?,
+        searches,
     })
+}
+
+fn searched(sample: &Sample, distance: Distance, search: Search, watch: &dyn Watch) -> Result<Searched, Cancelled> {
+    let climbed = |cost: Cost| {
+        let climb = climb_by(sample, distance, cost, search, &Silent(watch))?;
+        Ok(figures(Exam::leave_one_out(sample), distance, &climb.order()))
+    };
+    Ok(Searched { search, error: climbed(Cost::Error)?.0, adr: climbed(Cost::Adr)?.1 })
 }
 
 fn decisions(sample: &Sample, rounds: usize, watch: &dyn Watch) -> Result<Decisions, Cancelled> {
@@ -163,6 +187,7 @@ mod tests {
         assert_eq!(same.climb_adr.low, same.climb_adr.high);
         // Every model lies in the ranges of its own class, so no share is greater than that of the right one.
         assert!(same.decisions.share <= same.decisions.first && same.decisions.first <= 1.0);
+        assert_eq!(same.searches[0].error, same.climb_error.low);
         let spread = splits(&all, Distance::L2, 5, &Unwatched).unwrap().first_k_adr;
         assert!(spread.low < spread.mean && spread.mean < spread.high, "{spread:?}");
         assert_eq!(splits(&all, Distance::L2, 5, &Unwanted), Err(Cancelled));
