@@ -236,10 +236,11 @@ fn work(shared: &Shared, thread: usize) {
                     wanted = shared.wanted();
                     continue;
                 }
-                if shared.ended.swap(0, Ordering::Relaxed) > 0 {
+                // There is nothing to solve: what is kept for the next mesh is not needed either. Threads that helped
+                // with the last one come here later than the one that solved it.
+                let freed = shared.library.crew().rest();
+                if shared.ended.swap(0, Ordering::Relaxed) > 0 || freed {
                     drop(wanted);
-                    // There is nothing to solve: what is kept for the next mesh is not needed either.
-                    shared.library.crew().rest();
                     heap::give_back();
                     wanted = shared.wanted();
                     continue;

@@ -97,9 +97,10 @@ impl Crew {
         found.filter(|found| found.largest / WASTED <= rows).unwrap_or_default()
     }
 
-    /// Frees all scratch memory that no solve has.
-    pub fn rest(&self) {
-        self.tools().clear();
+    /// Frees all scratch memory that no solve has. Returns whether there was any.
+    pub fn rest(&self) -> bool {
+        let idle = std::mem::take(&mut *self.tools());
+        !idle.is_empty()
     }
 
     /// Keeps scratch memory for later.
