@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 /// All eigenvalues of one piece of a mesh between two shifts.
 ///
 /// The shifts depend on the mesh and the operator alone, so a band is the same bits whenever and in whatever company
-/// it was computed. It is certified by itself: as many eigenvalues lie in it as the two inertia counts differ.
+/// it was computed; but the last one may end early, where as many are certified as were asked for. It is certified by
+/// itself: as many eigenvalues lie in it as the two inertia counts differ.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// Which piece of the mesh: 0 for all small ones together, then those with a sparse solver of their own.
@@ -20,6 +21,8 @@ pub struct Band {
     pub below: usize,
     /// How many eigenvalues of the piece lie below `upper`.
     pub above: usize,
+    /// Whether it ends early: its values are the first ones of the band that is there when more are asked for.
+    pub early: bool,
     /// How many of `values` are the zeros of the kernel.
     pub zeros: usize,
     /// The eigenvalues, ascending: `above - below` of them.

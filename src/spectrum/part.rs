@@ -18,7 +18,7 @@ use super::{
 };
 
 /// Eigenvalues that a slice aims at.
-const TARGET: f64 = 48.0;
+pub(super) const TARGET: f64 = 48.0;
 /// Eigenvalues that a slice may have before it is made narrower.
 const MOST: usize = 76;
 /// Blocks of a basis after which a process gives up.
@@ -134,7 +134,7 @@ impl Piece {
     /// Those of the known bands that are of this piece and continue each other from zero.
     pub(super) fn taken_over(&self, known: &[Band]) -> Vec<Band> {
         let mut mine: Vec<&Band> = known.iter().filter(|band| band.part == self.number).collect();
-        mine.sort_by_key(|band| band.place);
+        mine.sort_by_key(|band| (band.place, band.early));
         let mut bands: Vec<Band> = Vec::new();
         for band in mine {
             if band.follows(bands.last()) && band.above <= self.pencil.order() {
@@ -294,6 +294,31 @@ impl Piece {
         self.finish(shift, found)
     }
 
+    /// The beginning of the band after these, up to σ: the first `count` eigenvalues on the right side of the process at
+    /// their end. `None` when the count at σ is another one.
+    ///
+    /// # Errors
+    /// When cancelled.
+    pub(super) fn ended(
+        &self,
+        bands: &[Band],
+        right: &Side,
+        ending: Ending,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Option<Band>, Advance> {
+        let End { place, upper: lower, above: below, middle, .. } = self.end(bands);
+        let Ending { sigma: upper, count } = ending;
+        let above = below + count;
+        if self.factor(tools, upper, poll)? != Some(above) {
+            return Ok(None);
+        }
+        let Some(mut found) = join(&right.found[..count], &[], count) else { return Ok(None) };
+        sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
+        let shift = Shift { place, lower, upper, below, above, middle, attempt: 0 };
+        Ok(self.finish(&shift, found).ok().map(|band| Band { early: true, ..band }))
+    }
+
     /// Factors at σ and counts; `None` when rounding may have spoilt the factor, so that σ has to move.
     fn factor(&self, tools: &mut Tools, sigma: f64, poll: &mut Poll) -> Result<Option<usize>, Advance> {
         match tools.factor.compute(&self.pencil.symbolic, &self.pencil.matrix, sigma, poll) {
@@ -384,11 +409,21 @@ impl Piece {
             upper: if above == self.pencil.order() { f64::MAX } else { upper * self.unit },
             below,
             above,
+            early: false,
             zeros,
             values: found.iter().map(|found| found.value * self.unit).collect(),
             errors: found.iter().map(|found| found.error * self.unit).collect(),
         })
     }
+}
+
+/// Where a chain can end, by what the process at its last shift has seen on its right side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ending {
+    /// A shift between two of the eigenvalues there, in the scaled unit.
+    pub sigma: f64,
+    /// How many of them are below it.
+    pub count: usize,
 }
 
 /// One process.

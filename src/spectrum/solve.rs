@@ -120,6 +120,7 @@ fn small_pieces(
         upper: f64::MAX,
         below: 0,
         above: rows,
+        early: false,
         zeros: all.iter().take_while(|found| found.value == 0.0).count(),
         values: all.iter().map(|found| found.value * unit).collect(),
         errors: all.iter().map(|found| found.error * unit).collect(),

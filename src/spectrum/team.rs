@@ -17,7 +17,7 @@ use std::{
 use super::{
     SpectrumError,
     band::Band,
-    part::{End, Piece, Shift, Tools},
+    part::{End, Ending, Piece, Shift, TARGET, Tools},
     poll::Poll,
     slice::{Side, Sides},
     timings::Timings,
@@ -64,8 +64,12 @@ struct Chain {
     bands: Vec<Band>,
     /// How many of them belong to the answer, as far as is known.
     needed: usize,
-    /// The right side of the last band's upper shift, where it is known.
-    right: Option<Side>,
+    /// For each band the right side of its upper shift, where it is known.
+    rights: Vec<Option<Side>>,
+    /// The answer ends in the next band that is needed, unless the count there says otherwise.
+    ending: Option<Stop>,
+    /// After so many bands the count has said otherwise.
+    endless: usize,
     /// The shifts above, in order.
     slots: VecDeque<Slot>,
     /// A thread is placing the next shift.
@@ -74,6 +78,13 @@ struct Chain {
     again: Option<(f64, u32)>,
     /// Where the chain ends for want of a certificate.
     failed: Option<f64>,
+}
+
+/// Where the answer ends, and whether a thread is counting there.
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    at: Ending,
+    counting: bool,
 }
 
 /// A process.
@@ -112,7 +123,9 @@ enum Work {
     /// Run the process of a slot.
     Run(usize, u64, Place),
     /// Make the next band of what the processes at its ends saw.
-    Make(usize, Place, Sides, Side),
+    Make(usize, u64, Place, Sides),
+    /// Count where the answer ends.
+    End(usize, Ending),
 }
 
 /// How a solve stands.
@@ -136,6 +149,11 @@ impl Chain {
         last.unwrap_or_else(|| (self.bands.last().map_or(0.0, |band| band.upper), self.counted()))
     }
 
+    /// What is seen on the right of its first bands.
+    fn right(&self, bands: usize) -> Option<&Side> {
+        bands.checked_sub(1).and_then(|last| self.rights[last].as_ref())
+    }
+
     fn take(&mut self, number: u64) -> Option<usize> {
         self.slots.iter().position(|slot| slot.number == number)
     }
@@ -149,7 +167,17 @@ impl Team {
             .map(|piece| {
                 let bands = piece.taken_over(known);
                 let needed = bands.len();
-                Chain { bands, needed, right: None, slots: VecDeque::new(), placing: false, again: None, failed: None }
+                Chain {
+                    rights: vec![None; needed],
+                    bands,
+                    needed,
+                    ending: None,
+                    endless: 0,
+                    slots: VecDeque::new(),
+                    placing: false,
+                    again: None,
+                    failed: None,
+                }
             })
             .collect();
         let state = State { chains, next: 0, helpers: 0, timings: Timings::default() };
@@ -180,14 +208,15 @@ impl Team {
         keep: &dyn Fn(&[Band]),
     ) -> Result<Vec<Band>, SpectrumError> {
         let over = Over(self);
-        let mut kept = usize::MAX;
+        let mut kept = None;
         let outcome = loop {
             let mut state = self.state();
             let (standing, done) = self.judge(&mut state);
-            let bands = state.chains.iter().map(|chain| chain.bands.len()).sum();
-            if kept != bands {
-                let all = (kept != usize::MAX).then(|| self.bands(&state, |chain| chain.bands.len()));
-                kept = bands;
+            let bands: usize = state.chains.iter().map(|chain| chain.bands.len()).sum();
+            // Fewer when what was solved beyond the end is dropped.
+            if kept.is_none_or(|kept| bands > kept) {
+                let all = kept.is_some().then(|| self.bands(&state, |chain| chain.bands.len()));
+                kept = Some(bands);
                 drop(state);
                 watch.progress(done.min(self.count), self.count);
                 if let Some(all) = all {
@@ -234,6 +263,7 @@ impl Team {
         self.state().helpers += 1;
         while !watch.cancelled() {
             let mut state = self.state();
+            self.judge(&mut state);
             let Some(work) = self.next(&mut state) else { break };
             drop(state);
             helped = true;
@@ -288,8 +318,19 @@ impl Team {
             });
             let done = below.sum::<usize>();
             let Some((_, at)) = lowest.filter(|_| done < self.count) else { return (Standing::Done, done) };
+            let ending = self.ending(state, at);
             let chain = &mut state.chains[at];
-            if chain.bands.len() > chain.needed {
+            if chain.bands.get(chain.needed).is_some_and(|next| next.early) {
+                chain.needed += 1;
+            } else if chain.bands[..chain.needed].last().is_some_and(|last| last.early) {
+                // More is asked for than when it was made.
+                chain.needed -= 1;
+                chain.bands.truncate(chain.needed);
+                chain.rights.truncate(chain.needed);
+            } else if let Some(at) = ending {
+                chain.ending.get_or_insert(Stop { at, counting: false });
+                return (Standing::Going, done);
+            } else if chain.bands.len() > chain.needed {
                 chain.needed += 1;
             } else if let Some(failed) = chain.failed {
                 return (Standing::Failed(failed), done);
@@ -299,14 +340,48 @@ impl Team {
         }
     }
 
+    /// Where the answer ends if it is what is certified up to there of the lowest chain, by what the process at the end
+    /// of its bands saw on its right side. Of the gaps between eigenvalues where that may be it is the widest.
+    fn ending(&self, state: &State, at: usize) -> Option<Ending> {
+        let (chain, piece) = (&state.chains[at], &self.pieces[at]);
+        let found = &chain.right(chain.needed).filter(|_| chain.endless != chain.needed)?.found;
+        let others = || state.chains.iter().zip(&self.pieces).enumerate().filter(|(other, _)| *other != at);
+        let limit = others().fold(f64::MAX, |limit, (_, (chain, piece))| {
+            let last = chain.needed.checked_sub(1).map(|last| &chain.bands[last]);
+            let finished = last.is_some_and(|last| last.above == piece.pencil.order());
+            if finished { limit } else { limit.min(last.map_or(0.0, |last| last.upper)) }
+        });
+        let mine = chain.needed.checked_sub(1).map_or(0, |last| chain.bands[last].above);
+        let below = |lambda: f64| {
+            let bands = others().flat_map(|(_, (chain, _))| &chain.bands[..chain.needed]).chain(&self.small);
+            bands.map(|band| band.values.partition_point(|&value| value <= lambda)).sum::<usize>()
+        };
+        let spacing = found.last()?.value - found.first()?.value;
+        let (least, mut best) = (0.02 * spacing / found.len() as f64, None);
+        for (before, pair) in found.windows(2).enumerate() {
+            let (sigma, count) = (0.5 * (pair[0].value + pair[1].value), before + 1);
+            let gap = pair[1].value - pair[1].near - pair[0].value - pair[0].near;
+            let enough = mine + count + below(sigma * piece.unit) >= self.count && sigma * piece.unit <= limit;
+            if enough && gap > best.map_or(least, |(widest, _)| widest) {
+                best = Some((gap, Ending { sigma, count }));
+            }
+        }
+        best.map(|(_, ending)| ending)
+    }
+
     /// What there is to do now, and notes that it is being done.
     fn next(&self, state: &mut State) -> Option<Work> {
         for (at, chain) in state.chains.iter_mut().enumerate() {
+            if let Some(stop) = &mut chain.ending {
+                if stop.counting {
+                    continue;
+                }
+                stop.counting = true;
+                return Some(Work::End(at, stop.at));
+            }
             if let Some(slot) = chain.slots.front_mut() {
                 match std::mem::replace(&mut slot.stage, Stage::Making) {
-                    Stage::Done(sides) => {
-                        return Some(Work::Make(at, slot.at, sides, chain.right.take().unwrap_or_default()));
-                    }
+                    Stage::Done(sides) => return Some(Work::Make(at, slot.number, slot.at, sides)),
                     Stage::Failed(failed) => {
                         chain.failed = Some(failed);
                         chain.slots.clear();
@@ -330,7 +405,11 @@ impl Team {
             .filter(|&at| placed[at].1 < self.pieces[at].pencil.order())
             .map(|at| (at, placed[at].0))
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
-        if state.chains[at].failed.is_some() || state.chains[at].placing || self.expected(state, limit) >= self.count {
+        let chain = &state.chains[at];
+        let expected = self.expected(state, limit);
+        // What the last process sees on its right side may be the end.
+        let perhaps = if chain.slots.is_empty() { 0 } else { (0.5 * TARGET) as usize };
+        if chain.failed.is_some() || chain.ending.is_some() || chain.placing || expected + perhaps >= self.count {
             return None;
         }
         let State { chains, next, .. } = state;
@@ -339,7 +418,7 @@ impl Team {
         let end = match slots_end {
             Some(Place::Shift(shift)) => shift.end(),
             Some(Place::Nowhere) => return None,
-            None if chain.right.is_none() && !chain.bands.is_empty() => {
+            None if chain.right(chain.bands.len()).is_none() && !chain.bands.is_empty() => {
                 *next += 1;
                 chain.slots.push_back(Slot { number: *next, at: Place::Again, stage: Stage::Running });
                 return Some(Work::Run(at, *next, Place::Again));

@@ -2,9 +2,9 @@
 
 use super::{Place, Slot, Stage, State, Team, Work};
 use crate::spectrum::{
-    part::{Advance, End, Tools},
+    part::{Advance, End, Ending, Tools},
     poll::Poll,
-    slice::{Side, Sides},
+    slice::Sides,
 };
 
 impl Team {
@@ -55,9 +55,13 @@ impl Team {
                 };
                 self.store(at, number, looked, &mut undo)
             }
-            Work::Make(at, place, sides, right) => {
-                undo.what = Some(Undone::Make(at, sides, right));
+            Work::Make(at, number, place, sides) => {
+                undo.what = Some(Undone::Make(at, number, sides));
                 self.make(at, place, tools, poll, &mut undo)
+            }
+            Work::End(at, ending) => {
+                undo.what = Some(Undone::End(at));
+                self.end_at(at, ending, tools, poll, &mut undo)
             }
         }
     }
@@ -114,25 +118,35 @@ impl Team {
         undo: &mut Undo<'_>,
     ) -> Result<(), Advance> {
         let made = match (place, &undo.what) {
-            (Place::Shift(shift), Some(Undone::Make(_, sides, right))) => {
-                self.pieces[at].band(&shift, right, &sides.left, tools, poll).map(Some)
+            (Place::Shift(shift), Some(Undone::Make(_, _, sides))) => {
+                let right = {
+                    let state = self.state();
+                    let chain = &state.chains[at];
+                    chain.right(chain.bands.len()).cloned().unwrap_or_default()
+                };
+                self.pieces[at].band(&shift, &right, &sides.left, tools, poll).map(Some)
             }
             _ => Ok(None),
         };
         if matches!(made, Err(Advance::Cancelled)) {
             return Err(Advance::Cancelled);
         }
-        let right = match undo.what.take() {
-            Some(Undone::Make(_, sides, _)) => Some(sides.right),
-            _ => None,
-        };
+        let Some(Undone::Make(_, number, Sides { right, .. })) = undo.what.take() else { return Ok(()) };
         let mut state = self.state();
         let chain = &mut state.chains[at];
-        chain.slots.pop_front();
+        // Gone when the chain has ended before it.
+        if chain.slots.pop_front_if(|slot| slot.number == number).is_none() {
+            return Ok(());
+        }
         match made {
-            Ok(band) => {
-                chain.bands.extend(band);
-                chain.right = right;
+            Ok(Some(band)) => {
+                chain.bands.push(band);
+                chain.rights.push(Some(right));
+            }
+            Ok(None) => {
+                if let Some(last) = chain.rights.last_mut() {
+                    *last = Some(right);
+                }
             }
             Err(error) => {
                 chain.failed = Some(match error {
@@ -141,6 +155,42 @@ impl Team {
                 });
                 chain.slots.clear();
             }
+        }
+        drop(state);
+        self.changed.notify_all();
+        Ok(())
+    }
+}
+
+impl Team {
+    /// Counts where the answer ends, and ends the chain there if that is as many as were seen.
+    fn end_at(
+        &self,
+        at: usize,
+        ending: Ending,
+        tools: &mut Tools,
+        poll: &mut Poll,
+        undo: &mut Undo<'_>,
+    ) -> Result<(), Advance> {
+        let (bands, right) = {
+            let state = self.state();
+            let chain = &state.chains[at];
+            (chain.bands[..chain.needed].to_vec(), chain.right(chain.needed).cloned().unwrap_or_default())
+        };
+        let ended = self.pieces[at].ended(&bands, &right, ending, tools, poll)?;
+        undo.what = None;
+        let mut state = self.state();
+        let chain = &mut state.chains[at];
+        chain.ending = None;
+        if let Some(band) = ended {
+            // What others have solved beyond it depends on how many they are.
+            chain.bands.truncate(chain.needed);
+            chain.rights.truncate(chain.needed);
+            chain.slots.clear();
+            chain.bands.push(band);
+            chain.rights.push(None);
+        } else {
+            chain.endless = chain.needed;
         }
         drop(state);
         self.changed.notify_all();
@@ -157,7 +207,8 @@ struct Undo<'a> {
 enum Undone {
     Place(usize, Option<(f64, u32)>),
     Run(usize, u64),
-    Make(usize, Sides, Side),
+    Make(usize, u64, Sides),
+    End(usize),
 }
 
 impl Drop for Undo<'_> {
@@ -176,10 +227,13 @@ impl Drop for Undo<'_> {
                     chain.slots[place].stage = Stage::Open;
                 }
             }
-            Undone::Make(at, sides, right) => {
-                let chain = &mut state.chains[at];
-                chain.right = Some(right);
-                if let Some(slot) = chain.slots.front_mut() {
+            Undone::End(at) => {
+                if let Some(stop) = &mut state.chains[at].ending {
+                    stop.counting = false;
+                }
+            }
+            Undone::Make(at, number, sides) => {
+                if let Some(slot) = state.chains[at].slots.front_mut().filter(|slot| slot.number == number) {
                     slot.stage = Stage::Done(sides);
                 }
             }
