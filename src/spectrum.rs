@@ -4,8 +4,9 @@
 //! the eigenvalues below it: they are as many as D has negative entries (Sylvester). A block Lanczos process with the
 //! same factor finds those near the shift on both sides. The eigenvalues between two shifts come from the process at
 //! the lower and the process at the upper one, and they are accepted only when their number is the difference of the
-//! two counts. Such a slice is a [`Band`]. Nothing about it depends on how many eigenvalues were asked for, so more
-//! of them are always the same bits as before and further ones.
+//! two counts. Such a slice is a [`Band`]. No eigenvalue depends on how many were asked for, so more of them are always
+//! the same bits as before and further ones. Only where the answer ends does: where the process at the last shift sees
+//! as many eigenvalues above it as are still wanted, a count above those ends it, without a process of its own.
 //!
 //! Every eigenvalue comes with a [bound](Spectrum::residuals) on its error; what it rests on is told in [`mod@slice`].
 //! [`eigenvectors()`] of chosen eigenvalues and the eigenvalues [`near()`] a target are computed on demand.
@@ -62,7 +63,7 @@ mod vectors;
 mod window;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
-pub const KERNEL: u32 = 6;
+pub const KERNEL: u32 = 7;
 
 /// Why there is no spectrum.
 #[derive(Debug, Error)]
@@ -205,7 +206,7 @@ impl Spectrum {
 /// where they continue each other from λ = 0.
 ///
 /// The result is the same bits whatever is known, but for further bands that `known` holds. Time grows with the number
-/// of bands that are not known, at about 40 eigenvalues each.
+/// of bands that are not known, at about 50 eigenvalues each.
 ///
 /// Memory is bounded whatever the mesh and however many eigenvalues: by 8 MB, 4 kB for each row of the matrices, 24
 /// bytes for each number in a factor ([`Timings::entries`]) and 1 kB for each vertex and face (18 faces for each point

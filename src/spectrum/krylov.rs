@@ -42,7 +42,7 @@ pub(super) struct Scratch {
     /// The basis in single precision, and B times it, unless B is the identity.
     blocks: Vec<Vec<Panel>>,
     images: Vec<Vec<Panel>>,
-    /// The basis in double precision, where eigenvectors are wanted of it.
+    /// The basis in double precision.
     exact: Vec<Buffer>,
     /// The newest block of the basis and the one before it.
     now: Buffer,
@@ -73,20 +73,21 @@ pub(super) struct Ritz {
     pub residual: f64,
 }
 
-/// What a basis is for.
+/// How a basis is kept.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Purpose<'a> {
-    /// Eigenvalues alone: it is kept in single precision.
-    Values,
-    /// Eigenvectors too: it is kept in double precision, and orthogonal to these vectors, in whole blocks.
-    Vectors(&'a [Buffer]),
+pub(super) enum Basis<'a> {
+    /// In single precision: half the bytes, for eigenvalues alone.
+    Single,
+    /// In double precision, and orthogonal to these vectors, in whole blocks: for eigenvectors, and where the basis
+    /// comes to hold much of the space.
+    Double(&'a [Buffer]),
 }
 
-impl<'a> Purpose<'a> {
+impl<'a> Basis<'a> {
     fn locked(self) -> &'a [Buffer] {
         match self {
-            Self::Values => &[],
-            Self::Vectors(locked) => locked,
+            Self::Single => &[],
+            Self::Double(locked) => locked,
         }
     }
 }
@@ -97,7 +98,7 @@ pub(super) struct Krylov<'a> {
     factor: &'a Factor,
     sigma: f64,
     scratch: &'a mut Scratch,
-    purpose: Purpose<'a>,
+    basis: Basis<'a>,
     /// Diagonal blocks of the projected operator.
     alpha: Vec<Square>,
     /// Blocks below the diagonal: `beta[j]` couples block j to block j + 1.
@@ -121,7 +122,7 @@ impl<'a> Krylov<'a> {
         factor: &'a Factor,
         sigma: f64,
         seed: u64,
-        purpose: Purpose<'a>,
+        basis: Basis<'a>,
         scratch: &'a mut Scratch,
         poll: &mut Poll,
     ) -> Result<Self, Stop> {
@@ -137,7 +138,7 @@ impl<'a> Krylov<'a> {
             factor,
             sigma,
             scratch,
-            purpose,
+            basis,
             alpha: Vec::new(),
             beta: Vec::new(),
             lost: Vec::new(),
@@ -228,8 +229,8 @@ impl<'a> Krylov<'a> {
     /// then is one pass of orthogonalisation enough: it multiplies what orthogonality the basis lacks with what it
     /// removes.
     ///
-    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless eigenvectors
-    /// are wanted.
+    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless the basis is in
+    /// double precision.
     fn recur(&mut self) -> Square {
         let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
         let mut sum = [Square::default()];
@@ -248,7 +249,7 @@ impl<'a> Krylov<'a> {
         let skew = skew.fold(0.0_f64, |most, (i, j)| most.max((sum[i][j] - sum[j][i]).abs()));
         // False for NaN too.
         self.symmetric &= skew <= 1e-5 * largest;
-        if matches!(self.purpose, Purpose::Vectors(_)) {
+        if matches!(self.basis, Basis::Double(_)) {
             dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
         }
         self.alpha.push(alpha);
@@ -260,8 +261,8 @@ impl<'a> Krylov<'a> {
     fn orthogonalise(&mut self, blocks: usize, known: Option<&Square>, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
         let Scratch { blocks: basis, images, exact, now, work, mass, room, .. } = &mut *self.scratch;
         let mut sums = Vec::new();
-        match self.purpose {
-            Purpose::Values => {
+        match self.basis {
+            Basis::Single => {
                 let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
                 let images: Vec<&[Panel]> = images.iter().take(blocks).map(Vec::as_slice).collect();
                 let dual = if matches!(self.pencil.mass, Product::Unit) { &basis } else { &images };
@@ -272,7 +273,7 @@ impl<'a> Krylov<'a> {
                 dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut() });
                 poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
             }
-            Purpose::Vectors(locked) => {
+            Basis::Double(locked) => {
                 let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
                 dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
                 poll.charge(Cost::Products);
@@ -301,7 +302,7 @@ impl<'a> Krylov<'a> {
             list[at].resize(count, Panel::default());
         };
         let mut single: [&mut [Panel]; 2] = [&mut [], &mut []];
-        if matches!(self.purpose, Purpose::Values) {
+        if matches!(self.basis, Basis::Single) {
             let count = panels(work.rows().len());
             room(blocks, count);
             single[0] = &mut blocks[at];
@@ -321,7 +322,7 @@ impl<'a> Krylov<'a> {
     /// that, so that it was `work M R` at first.
     fn decompose(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<(Square, Square), Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-        if blocks == 0 && !self.purpose.locked().is_empty() {
+        if blocks == 0 && !self.basis.locked().is_empty() {
             self.orthogonalise(0, None, poll)?;
         }
         let mut round = 0;
@@ -360,7 +361,7 @@ impl<'a> Krylov<'a> {
     fn keep(&mut self) {
         let at = self.beta.len();
         let Scratch { exact, now, past, next, .. } = &mut *self.scratch;
-        if matches!(self.purpose, Purpose::Vectors(_)) {
+        if matches!(self.basis, Basis::Double(_)) {
             if exact.len() == at {
                 exact.push(Buffer::default());
             }

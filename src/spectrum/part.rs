@@ -6,10 +6,11 @@
 //! once ([`team`](super::team)). [`Stretch`](super::window) takes the steps one after
 //! the other.
 
+pub(super) use self::shift::{End, Ending, Shift};
 use super::{
     band::Band,
     factor::Factor,
-    krylov::{Krylov, Purpose, Scratch},
+    krylov::{Basis, Krylov, Scratch},
     lanes::WIDTH,
     pencil::Pencil,
     poll::{Poll, Stop},
@@ -17,8 +18,10 @@ use super::{
     thorough::thorough,
 };
 
+mod shift;
+
 /// Eigenvalues that a slice aims at.
-pub(super) const TARGET: f64 = 48.0;
+pub(super) const TARGET: f64 = 54.0;
 /// Eigenvalues that a slice may have before it is made narrower.
 const MOST: usize = 76;
 /// Blocks of a basis after which a process gives up.
@@ -26,11 +29,11 @@ const BLOCKS: usize = 36;
 /// Blocks after which it looks at its Ritz values for the first time; as many as most processes need but one.
 const FIRST_LOOK: usize = 18;
 
-/// Up to this many rows a basis is kept in double precision. It may come to hold a good part of the space, and what is
-/// left of that is then so little that single precision does not know it from rounding.
-const SMALL: usize = 4 * BLOCKS * WIDTH;
+/// With fewer rows a basis is kept in double precision. It may come to hold a good part of the space, and what is left
+/// of that is then so little that single precision does not know it from rounding.
+const FEW_ROWS: usize = 4 * BLOCKS * WIDTH;
 
-/// Everything that the parts share while one of them works.
+/// What a thread works with: the memory of a factorisation and of a process, for one piece after the other.
 #[derive(Debug, Default)]
 pub(super) struct Tools {
     pub factor: Factor,
@@ -48,81 +51,6 @@ pub(super) struct Piece {
     measure: f64,
     /// What turns its λ into the mesh's.
     pub unit: f64,
-}
-
-/// Where a chain has got to, in the scaled unit.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct End {
-    /// The place of the next band.
-    place: u32,
-    /// The last shift.
-    upper: f64,
-    /// How many eigenvalues lie below it.
-    above: usize,
-    /// How far the next shift is to be from it.
-    step: f64,
-    /// Where the right side of the process at the last shift gives over to the left side of the one at the next.
-    middle: f64,
-}
-
-impl End {
-    /// Where the last shift is.
-    pub(super) fn upper(&self) -> f64 {
-        self.upper
-    }
-
-    /// How many eigenvalues lie below it.
-    pub(super) fn above(&self) -> usize {
-        self.above
-    }
-
-    /// Whether both are at the same shift.
-    pub(super) fn is(&self, other: &Self) -> bool {
-        self.place == other.place && self.upper == other.upper
-    }
-
-    /// The end of a slice.
-    fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize)) -> Self {
-        let step = distance(lower, upper, counts.1 - counts.0);
-        Self { place: place + 1, upper, above: counts.1, step, middle: upper + 0.5 * step }
-    }
-}
-
-/// A shift that was placed, in the scaled unit, and the slice below it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Shift {
-    place: u32,
-    lower: f64,
-    pub upper: f64,
-    below: usize,
-    pub above: usize,
-    middle: f64,
-    attempt: u32,
-}
-
-impl Shift {
-    /// Both ends of the slice and its eigenvalues.
-    pub(super) fn span(&self) -> (f64, f64, usize) {
-        (self.lower, self.upper, self.above - self.below)
-    }
-
-    pub(super) fn end(&self) -> End {
-        End::new(self.place, self.lower, self.upper, (self.below, self.above))
-    }
-
-    /// Where to try next when an eigenvalue turned out to be too near: moved by a rule that knows nothing but this
-    /// piece, so that it moves the same way every time.
-    pub(super) fn moved(&self) -> (f64, u32) {
-        (self.upper + 0.013 * (self.upper - self.lower), self.attempt + 1)
-    }
-}
-
-/// The distance to the next shift, from what the slice before had.
-fn distance(lower: f64, upper: f64, count: usize) -> f64 {
-    // The first slice begins at zero and is half as wide as the ones after it.
-    let width = if lower == 0.0 { 2.0 * upper } else { upper - lower };
-    let count = if lower == 0.0 { 2 * count } else { count };
-    (TARGET / (count.max(1) as f64) * width).clamp(0.5 * width, 2.5 * width)
 }
 
 impl Piece {
@@ -343,8 +271,8 @@ impl Piece {
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch, .. } = tools;
         poll.meter.timings.processes += 1;
-        let purpose = if self.pencil.order() < SMALL { Purpose::Vectors(&[]) } else { Purpose::Values };
-        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, purpose, scratch, poll)?;
+        let basis = if self.pencil.order() < FEW_ROWS { Basis::Double(&[]) } else { Basis::Single };
+        let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, basis, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
         let spacing = (left + right.unwrap_or(left)) / TARGET;
@@ -415,15 +343,6 @@ impl Piece {
             errors: found.iter().map(|found| found.error * self.unit).collect(),
         })
     }
-}
-
-/// Where a chain can end, by what the process at its last shift has seen on its right side.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Ending {
-    /// A shift between two of the eigenvalues there, in the scaled unit.
-    pub sigma: f64,
-    /// How many of them are below it.
-    pub count: usize,
 }
 
 /// One process.

@@ -17,11 +17,17 @@
 //!    residuals (Mathias 1998, *Quadratic residual bounds for the Hermitian eigenvalue problem*, theorem 1, whose gap
 //!    is to the rest of the projected operator, so that 1 is applied to it first). This is [`Found::error`].
 //!
-//! Rounding is added to both: that of the dense eigenproblem, 16 ε times the largest θ, what the basis's single
-//! precision [leaves out](super::krylov::Krylov::leak), and that of the factorisation and the solves. These solve a
-//! neighbouring problem, (L − σB + E) x = Bx. E shifts an eigenvalue by xᵀEx, which is
-//! [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and taken [eightfold](SAFETY). The
-//! last two are the parts of the bound that are estimates.
+//! Rounding is added to both:
+//!
+//! - that of the dense eigenproblem, 16 ε times the largest θ;
+//! - that of λ = σ + 1/θ and of the entries of L − σB, [32 ε](ROUNDING) times λ or σ;
+//! - that of the factorisation and the solves. These solve a neighbouring problem, (L − σB + E) x = Bx. E shifts an
+//!   eigenvalue by xᵀEx, which is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and
+//!   taken [eightfold](SAFETY);
+//! - where the basis is in single precision, what this [leaves out](super::krylov::Krylov::leak), taken as it is: on the
+//!   long thin mesh where it is largest, the true error is a thousandth of it.
+//!
+//! The last two are the parts of the bound that are estimates.
 
 use super::krylov::Ritz;
 

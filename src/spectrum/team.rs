@@ -24,6 +24,7 @@ use super::{
 };
 use crate::watch::Watch;
 
+mod ending;
 mod work;
 
 #[cfg(test)]
@@ -195,8 +196,8 @@ impl Team {
         self.pieces.iter().filter(|piece| piece.pencil.kernel).count()
     }
 
-    /// How many eigenvalues are certified, once the bands of the answer are there. `tell` learns of progress: how many
-    /// are certified so far, and all bands of the answer when there is a new one.
+    /// The bands of the answer, once they are there. The watch learns how many eigenvalues are certified so far, and
+    /// `keep` of all bands that are finished when there is a new one.
     ///
     /// # Errors
     /// When the watch cancels, or when the certificate cannot be had.
@@ -287,10 +288,6 @@ impl Team {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn unit(&self) -> f64 {
-        self.pieces.first().map_or(1.0, |piece| piece.unit)
-    }
-
     /// Bands of the answer so far: of the small pieces, and those that a chain has up to here.
     fn bands(&self, state: &State, count: impl Fn(&Chain) -> usize) -> Vec<Band> {
         self.small.iter().chain(state.chains.iter().flat_map(|chain| &chain.bands[..count(chain)])).cloned().collect()
@@ -340,35 +337,6 @@ impl Team {
         }
     }
 
-    /// Where the answer ends if it is what is certified up to there of the lowest chain, by what the process at the end
-    /// of its bands saw on its right side. Of the gaps between eigenvalues where that may be it is the widest.
-    fn ending(&self, state: &State, at: usize) -> Option<Ending> {
-        let (chain, piece) = (&state.chains[at], &self.pieces[at]);
-        let found = &chain.right(chain.needed).filter(|_| chain.endless != chain.needed)?.found;
-        let others = || state.chains.iter().zip(&self.pieces).enumerate().filter(|(other, _)| *other != at);
-        let limit = others().fold(f64::MAX, |limit, (_, (chain, piece))| {
-            let last = chain.needed.checked_sub(1).map(|last| &chain.bands[last]);
-            let finished = last.is_some_and(|last| last.above == piece.pencil.order());
-            if finished { limit } else { limit.min(last.map_or(0.0, |last| last.upper)) }
-        });
-        let mine = chain.needed.checked_sub(1).map_or(0, |last| chain.bands[last].above);
-        let below = |lambda: f64| {
-            let bands = others().flat_map(|(_, (chain, _))| &chain.bands[..chain.needed]).chain(&self.small);
-            bands.map(|band| band.values.partition_point(|&value| value <= lambda)).sum::<usize>()
-        };
-        let spacing = found.last()?.value - found.first()?.value;
-        let (least, mut best) = (0.02 * spacing / found.len() as f64, None);
-        for (before, pair) in found.windows(2).enumerate() {
-            let (sigma, count) = (0.5 * (pair[0].value + pair[1].value), before + 1);
-            let gap = pair[1].value - pair[1].near - pair[0].value - pair[0].near;
-            let enough = mine + count + below(sigma * piece.unit) >= self.count && sigma * piece.unit <= limit;
-            if enough && gap > best.map_or(least, |(widest, _)| widest) {
-                best = Some((gap, Ending { sigma, count }));
-            }
-        }
-        best.map(|(_, ending)| ending)
-    }
-
     /// What there is to do now, and notes that it is being done.
     fn next(&self, state: &mut State) -> Option<Work> {
         for (at, chain) in state.chains.iter_mut().enumerate() {
@@ -400,7 +368,8 @@ impl Team {
 
     /// The chain that has come least far goes on, if its bands will be needed.
     fn next_shift(&self, state: &mut State) -> Option<Work> {
-        let placed: Vec<(f64, usize)> = state.chains.iter().map(|chain| chain.placed(self.unit())).collect();
+        let placed: Vec<(f64, usize)> =
+            state.chains.iter().zip(&self.pieces).map(|(chain, piece)| chain.placed(piece.unit)).collect();
         let (at, limit) = (0..placed.len())
             .filter(|&at| placed[at].1 < self.pieces[at].pencil.order())
             .map(|at| (at, placed[at].0))
@@ -414,17 +383,12 @@ impl Team {
         }
         let State { chains, next, .. } = state;
         let chain = &mut chains[at];
-        let slots_end = chain.slots.back().map(|slot| slot.at);
-        let end = match slots_end {
-            Some(Place::Shift(shift)) => shift.end(),
-            Some(Place::Nowhere) => return None,
-            None if chain.right(chain.bands.len()).is_none() && !chain.bands.is_empty() => {
-                *next += 1;
-                chain.slots.push_back(Slot { number: *next, at: Place::Again, stage: Stage::Running });
-                return Some(Work::Run(at, *next, Place::Again));
-            }
-            Some(Place::Again) | None => self.pieces[at].end(&chain.bands),
-        };
+        if chain.slots.is_empty() && !chain.bands.is_empty() && chain.right(chain.bands.len()).is_none() {
+            *next += 1;
+            chain.slots.push_back(Slot { number: *next, at: Place::Again, stage: Stage::Running });
+            return Some(Work::Run(at, *next, Place::Again));
+        }
+        let end = self.end_of(at, chain)?;
         chain.placing = true;
         Some(Work::Place(at, end, chain.again.take()))
     }

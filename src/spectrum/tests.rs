@@ -158,6 +158,21 @@ fn more_eigenvalues_are_the_same_ones_and_further_ones() {
         assert!(longer == direct);
         assert_eq!(bits(&longer.eigenvalues()), bits(&direct.eigenvalues()));
         assert_eq!(bits(&direct.eigenvalues()[..short.count()]), bits(&short.eigenvalues()));
+        let mut early = 0;
+        for count in [23, 47, 71, 95, 110] {
+            let short = solve(&mesh, choice, count, &[], &Unwatched).unwrap();
+            assert!(short.count() >= count);
+            assert_eq!(bits(&direct.eigenvalues()[..short.count()]), bits(&short.eigenvalues()));
+            if short.bands.last().is_some_and(|last| last.early) {
+                early += 1;
+                // The last band took no process of its own.
+                assert_eq!(short.timings.processes, short.bands.len() - 1);
+                assert!(solve(&mesh, choice, count + 200, &short.bands, &Unwatched).unwrap().count() >= count + 200);
+                assert!(solve(&mesh, choice, 400, &short.bands, &Unwatched).unwrap() == direct);
+                assert!(solve(&mesh, choice, count, &short.bands[..1], &Unwatched).unwrap() == short);
+            }
+        }
+        assert!(early > 1, "{early}");
         // Known bands are taken over, not solved again, and those that do not follow each other are not used.
         let torn = [&direct.bands[1..], &direct.bands[..1]].concat();
         assert!(solve(&mesh, choice, 400, &torn, &Unwatched).unwrap() == direct);

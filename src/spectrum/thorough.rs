@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::{
-    krylov::{Krylov, Purpose, Ritz},
+    krylov::{Basis, Krylov, Ritz},
     lanes::{Buffer, WIDTH},
     part::Tools,
     pencil::Pencil,
@@ -51,7 +51,7 @@ pub(super) fn thorough(
         let blocks = BLOCKS.min(room.saturating_sub(locked.len())).max(1);
         let seed = seed ^ round.rotate_left(40);
         let Tools { factor, scratch, .. } = tools;
-        let mut krylov = Krylov::start(pencil, factor, pole, seed, Purpose::Vectors(&locked), scratch, poll)?;
+        let mut krylov = Krylov::start(pencil, factor, pole, seed, Basis::Double(&locked), scratch, poll)?;
         for _ in 0..blocks {
             krylov.step(poll)?;
         }

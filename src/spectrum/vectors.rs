@@ -12,7 +12,7 @@ use super::{
     Spectrum, SpectrumError,
     band::Band,
     dense::direct,
-    krylov::{Krylov, Purpose, Ritz},
+    krylov::{Basis, Krylov, Ritz},
     lanes::{Buffer, WIDTH},
     part::Tools,
     pencil::{Pencil, has_kernel},
@@ -297,8 +297,7 @@ fn window(
     let margin = 1e-4 * spacing;
     let seed = sigma.to_bits().rotate_left(29);
     let Tools { factor, scratch, .. } = tools;
-    let mut krylov =
-        Krylov::start(pencil, factor, sigma, seed, Purpose::Vectors(&[]), scratch, poll).map_err(stopped)?;
+    let mut krylov = Krylov::start(pencil, factor, sigma, seed, Basis::Double(&[]), scratch, poll).map_err(stopped)?;
     let room = (pencil.order() - 1) / WIDTH;
     let mut chosen: Vec<Ritz> = Vec::new();
     for step in 1..=STEPS.min(room) {

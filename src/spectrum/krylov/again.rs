@@ -1,6 +1,6 @@
 //! What single precision costs where orthogonalisation takes out much.
 
-use super::{Krylov, Purpose, Scratch, product};
+use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
     block::Square,
     lanes::WIDTH,
@@ -33,12 +33,12 @@ impl Krylov<'_> {
     /// orthogonalisation took out are those along rounded vectors, whose products with each other are not quite those
     /// of an orthonormal basis.
     pub(in crate::spectrum) fn leak(&self) -> f64 {
-        match self.purpose {
-            Purpose::Values => {
+        match self.basis {
+            Basis::Single => {
                 let columns = self.lost.iter().flat_map(|lost| (0..WIDTH).map(|column| norm(lost, column)));
                 f64::from(f32::EPSILON) * columns.fold(0.0, f64::max)
             }
-            Purpose::Vectors(_) => 0.0,
+            Basis::Double(_) => 0.0,
         }
     }
 }

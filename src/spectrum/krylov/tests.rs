@@ -12,9 +12,9 @@ fn defect(krylov: &Krylov) -> f64 {
     let n = krylov.pencil.order();
     let mut product = vec![[0.0; WIDTH]; n];
     let rows = |block: usize| -> Vec<Row> {
-        match krylov.purpose {
-            Purpose::Vectors(_) => krylov.scratch.exact[block].rows().to_vec(),
-            Purpose::Values => {
+        match krylov.basis {
+            Basis::Double(_) => krylov.scratch.exact[block].rows().to_vec(),
+            Basis::Single => {
                 let panels = &krylov.scratch.blocks[block];
                 (0..n).map(|at| panels[at / ROWS].0.map(|column| f64::from(column[at % ROWS]))).collect()
             }
@@ -44,17 +44,17 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
     let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
     let sigma = 123.0;
     factor.compute(&pencil.symbolic, &pencil.matrix, sigma, &mut poll).unwrap();
-    let mut run = |purpose| {
-        let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, purpose, &mut scratch, &mut poll).unwrap();
+    let mut run = |basis| {
+        let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, basis, &mut scratch, &mut poll).unwrap();
         for _ in 0..14 {
             krylov.step(&mut poll).unwrap();
         }
         let ritz = krylov.ritz(&mut poll).unwrap();
-        let vectors = matches!(purpose, Purpose::Vectors(_)).then(|| krylov.vectors(&ritz[..40]).unwrap());
+        let vectors = matches!(basis, Basis::Double(_)).then(|| krylov.vectors(&ritz[..40]).unwrap());
         (ritz, vectors.unwrap_or_default(), defect(&krylov))
     };
-    let (single, _, rounded) = run(Purpose::Values);
-    let (ritz, vectors, defect) = run(Purpose::Vectors(&[]));
+    let (single, _, rounded) = run(Basis::Single);
+    let (ritz, vectors, defect) = run(Basis::Double(&[]));
     assert!(defect < 1e-12, "{defect:e}");
     // Single precision leaves so much; the projected operator feels its square.
     assert!(rounded < 5e-7, "{rounded:e}");
@@ -90,7 +90,7 @@ fn dependent_columns_are_replaced() {
     let mut poll = Poll::new(&Unwatched);
     let (mut factor, mut scratch) = (Factor::default(), Scratch::default());
     factor.compute(&pencil.symbolic, &pencil.matrix, 50.0, &mut poll).unwrap();
-    let mut krylov = Krylov::start(&pencil, &factor, 50.0, 5, Purpose::Values, &mut scratch, &mut poll).unwrap();
+    let mut krylov = Krylov::start(&pencil, &factor, 50.0, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
     for row in krylov.scratch.work.rows_mut() {
         row[3] = 2.0 * row[1] - row[0];
         row[7] = 0.0;

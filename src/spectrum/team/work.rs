@@ -2,7 +2,7 @@
 
 use super::{Place, Slot, Stage, State, Team, Work};
 use crate::spectrum::{
-    part::{Advance, End, Ending, Tools},
+    part::{Advance, End, Tools},
     poll::Poll,
     slice::Sides,
 };
@@ -67,7 +67,7 @@ impl Team {
     }
 
     /// Where the chain goes on at the moment.
-    fn end_of(&self, at: usize, chain: &super::Chain) -> Option<End> {
+    pub(super) fn end_of(&self, at: usize, chain: &super::Chain) -> Option<End> {
         match chain.slots.back().map(|slot| slot.at) {
             Some(Place::Shift(shift)) => Some(shift.end()),
             Some(Place::Nowhere) => None,
@@ -162,49 +162,13 @@ impl Team {
     }
 }
 
-impl Team {
-    /// Counts where the answer ends, and ends the chain there if that is as many as were seen.
-    fn end_at(
-        &self,
-        at: usize,
-        ending: Ending,
-        tools: &mut Tools,
-        poll: &mut Poll,
-        undo: &mut Undo<'_>,
-    ) -> Result<(), Advance> {
-        let (bands, right) = {
-            let state = self.state();
-            let chain = &state.chains[at];
-            (chain.bands[..chain.needed].to_vec(), chain.right(chain.needed).cloned().unwrap_or_default())
-        };
-        let ended = self.pieces[at].ended(&bands, &right, ending, tools, poll)?;
-        undo.what = None;
-        let mut state = self.state();
-        let chain = &mut state.chains[at];
-        chain.ending = None;
-        if let Some(band) = ended {
-            // What others have solved beyond it depends on how many they are.
-            chain.bands.truncate(chain.needed);
-            chain.rights.truncate(chain.needed);
-            chain.slots.clear();
-            chain.bands.push(band);
-            chain.rights.push(None);
-        } else {
-            chain.endless = chain.needed;
-        }
-        drop(state);
-        self.changed.notify_all();
-        Ok(())
-    }
-}
-
 /// Gives up what a thread was at, unless it is done: it was cancelled, or it panicked.
-struct Undo<'a> {
+pub(super) struct Undo<'a> {
     team: &'a Team,
-    what: Option<Undone>,
+    pub(super) what: Option<Undone>,
 }
 
-enum Undone {
+pub(super) enum Undone {
     Place(usize, Option<(f64, u32)>),
     Run(usize, u64),
     Make(usize, u64, Sides),

@@ -1,0 +1,85 @@
+//! Where the shifts of a chain are, in the scaled unit.
+
+/// Where a chain has got to, in the scaled unit.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::spectrum) struct End {
+    /// The place of the next band.
+    pub(super) place: u32,
+    /// The last shift.
+    pub(super) upper: f64,
+    /// How many eigenvalues lie below it.
+    pub(super) above: usize,
+    /// How far the next shift is to be from it.
+    pub(super) step: f64,
+    /// Where the right side of the process at the last shift gives over to the left side of the one at the next.
+    pub(super) middle: f64,
+}
+
+impl End {
+    /// Where the last shift is.
+    pub(in crate::spectrum) fn upper(&self) -> f64 {
+        self.upper
+    }
+
+    /// How many eigenvalues lie below it.
+    pub(in crate::spectrum) fn above(&self) -> usize {
+        self.above
+    }
+
+    /// Whether both are at the same shift.
+    pub(in crate::spectrum) fn is(&self, other: &Self) -> bool {
+        self.place == other.place && self.upper == other.upper
+    }
+
+    /// The end of a slice.
+    pub(super) fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize)) -> Self {
+        let step = distance(lower, upper, counts.1 - counts.0);
+        Self { place: place + 1, upper, above: counts.1, step, middle: upper + 0.5 * step }
+    }
+}
+
+/// A shift that was placed, in the scaled unit, and the slice below it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::spectrum) struct Shift {
+    pub(super) place: u32,
+    pub(super) lower: f64,
+    pub upper: f64,
+    pub(super) below: usize,
+    pub above: usize,
+    pub(super) middle: f64,
+    pub(super) attempt: u32,
+}
+
+impl Shift {
+    /// Both ends of the slice and its eigenvalues.
+    pub(in crate::spectrum) fn span(&self) -> (f64, f64, usize) {
+        (self.lower, self.upper, self.above - self.below)
+    }
+
+    pub(in crate::spectrum) fn end(&self) -> End {
+        End::new(self.place, self.lower, self.upper, (self.below, self.above))
+    }
+
+    /// Where to try next when an eigenvalue turned out to be too near: moved by a rule that knows nothing but this
+    /// piece, so that it moves the same way every time.
+    pub(in crate::spectrum) fn moved(&self) -> (f64, u32) {
+        (self.upper + 0.013 * (self.upper - self.lower), self.attempt + 1)
+    }
+}
+
+/// The distance to the next shift, from what the slice before had.
+fn distance(lower: f64, upper: f64, count: usize) -> f64 {
+    // The first slice begins at zero and is half as wide as the ones after it.
+    let width = if lower == 0.0 { 2.0 * upper } else { upper - lower };
+    let count = if lower == 0.0 { 2 * count } else { count };
+    (super::TARGET / (count.max(1) as f64) * width).clamp(0.5 * width, 2.5 * width)
+}
+
+/// Where a chain can end, by what the process at its last shift has seen on its right side.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::spectrum) struct Ending {
+    /// A shift between two of the eigenvalues there, in the scaled unit.
+    pub sigma: f64,
+    /// How many of them are below it.
+    pub count: usize,
+}
