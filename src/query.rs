@@ -16,7 +16,7 @@ pub use self::{
     problem::Problem,
     question::{Finding, Question, Reply},
     settings::{Parameter, Settings},
-    single::{Single, SingleError, Singles},
+    single::{Near, Single, SingleError, Singles},
     trace::Query,
 };
 

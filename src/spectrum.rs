@@ -364,5 +364,5 @@ pub fn between(
     if !(start.is_finite() && end.is_finite() && start <= end) {
         return Err(SpectrumError::Refused(format!("there is nothing between λ = {start} and λ = {end}")));
     }
-    window::between(&assemble_watched(mesh, choice, watch)?, start.max(0.0)..end, watch)
+    window::between(&assemble_watched(mesh, choice, watch)?, &(start.max(0.0)..end), watch)
 }

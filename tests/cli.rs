@@ -40,6 +40,8 @@ fn a_wrong_command_line_exits_with_2_and_says_what_is_wrong() {
         (&["report", "data", "--spectra"], "--spectra needs --format csv or json"),
         (&["spectrum", "a.off", "--count", "0"], "a number from 1"),
         (&["spectrum", "a.off", "b.off", "--format", "ev"], "--out"),
+        (&["spectrum", "a.off", "--near", "-3"], "a number from 0"),
+        (&["spectrum", "a.off", "--near", "3", "--out", "a.ev"], "--near"),
         (&["cache", "prune", "--max-size", "lots"], "800M"),
         (&["cache"], "stats"),
     ] {
@@ -326,6 +328,19 @@ fn spectra_are_written_in_every_format() {
     let mut reader = csv::Reader::from_reader(csv_out.out.as_bytes());
     let read: Vec<f64> = reader.records().map(|row| row.unwrap()[2].parse().unwrap()).collect();
     assert_eq!(read, values);
+
+    // Of the five about 6, the middle three; `k` counts those below them.
+    let target = values[6].to_string();
+    let near = tui(&room, &["spectrum", "ball.off", "--near", &target, "--count", "3", "--format", "json"]);
+    let near = &json(&near)["spectra"][0];
+    let below = near["below"].as_u64().unwrap() as usize;
+    let close = near["eigenvalues"].as_array().unwrap();
+    assert!(close.len() == 3 && (4..=6).contains(&below), "{near}");
+    for (value, expected) in close.iter().zip(&values[below..]) {
+        assert!((value.as_f64().unwrap() / expected - 1.0).abs() < 1e-10, "{near}");
+    }
+    let csv_near = tui(&room, &["spectrum", "ball.off", "--near", &target, "--count", "3", "--format", "csv"]);
+    assert!(csv_near.out.lines().nth(1).unwrap().starts_with(&format!("ball.off,{},", below + 1)), "{}", csv_near.out);
 
     let ev = tui(&room, &["spectrum", "ball.off", "--count", "9", "--out", "ball.ev"]);
     assert_eq!((ev.code, ev.out.as_str()), (Some(0), ""));

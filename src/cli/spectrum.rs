@@ -20,7 +20,7 @@ use super::{
     study,
 };
 use crate::{
-    query::{Problem, Single, SingleError, Singles, Source},
+    query::{Near, Problem, Single, SingleError, Singles, Source},
     report::spectrum::{Failed, MeshSpectrum, Spectra, ev},
     store,
     watch::{Silent, Watch},
@@ -35,6 +35,9 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
         return Err(Failure::Usage(
             "an .ev file holds one spectrum; for several meshes name a folder by --out".to_owned(),
         ));
+    }
+    if format == SpectrumFormat::Ev && arguments.near.is_some() {
+        return Err(Failure::Usage("an .ev file begins with the first eigenvalue; leave out --near".to_owned()));
     }
     if let Some(out) = out {
         output::check(out)?;
@@ -52,9 +55,8 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     for (path, solved) in arguments.meshes.iter().zip(solved) {
         let file = path.display().to_string();
         match solved {
-            Ok(Single { geometry, survey, spectrum, source, seconds }) => {
-                let processes = if source == Source::Ran { spectrum.timings.processes } else { 0 };
-                let spectrum = MeshSpectrum::new(file, geometry, &survey, problem.choice, &spectrum, arguments.count);
+            Ok(Solved { mesh, source, seconds, processes }) => {
+                let spectrum = MeshSpectrum { file, ..mesh };
                 if spectrum.eigenvalues.len() < arguments.count {
                     complain(&format!(
                         "{}: the mesh has {} eigenvalues, fewer than the {} asked for",
@@ -89,11 +91,11 @@ fn solve(
     problem: Problem,
     threads: Option<u16>,
     interrupt: Interrupt,
-) -> Vec<Result<Single, SingleError>> {
-    let (threads, count) = (study::threads(threads), arguments.count);
+) -> Vec<Result<Solved, SingleError>> {
+    let threads = study::threads(threads);
     if let [mesh] = &arguments.meshes[..] {
         let watch = Progress::new("eigenvalues", "eigenvalues", interrupt);
-        return vec![singles.crew().with(threads, || singles.solve(mesh, problem, count, &watch))];
+        return vec![singles.crew().with(threads, || one(singles, mesh, arguments, problem, &watch))];
     }
     let watch = Progress::new("meshes", "meshes", interrupt);
     let meshes = &arguments.meshes;
@@ -105,7 +107,7 @@ fn solve(
             let solved = if watch.cancelled() {
                 Err(SingleError::Cancelled)
             } else {
-                singles.solve(mesh, problem, count, &Silent(&watch))
+                one(singles, mesh, arguments, problem, &Silent(&watch))
             };
             found.lock().unwrap_or_else(PoisonError::into_inner).push((at, solved));
             watch.progress(all.done.fetch_add(1, Ordering::Relaxed) + 1, all.total);
@@ -122,6 +124,33 @@ fn solve(
     let mut found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
     found.sort_by_key(|(at, _)| *at);
     found.into_iter().map(|(_, solved)| solved).collect()
+}
+
+/// What is reported of a mesh, without the file's name.
+struct Solved {
+    mesh: MeshSpectrum,
+    source: Source,
+    seconds: f64,
+    processes: usize,
+}
+
+fn one(
+    singles: &Singles,
+    path: &Path,
+    arguments: &SpectrumArguments,
+    problem: Problem,
+    watch: &dyn Watch,
+) -> Result<Solved, SingleError> {
+    let (choice, count) = (problem.choice, arguments.count);
+    if let Some(target) = arguments.near {
+        let Near { geometry, survey, window, seconds } = singles.near(path, problem, target, count, watch)?;
+        let processes = window.timings.processes;
+        let mesh = MeshSpectrum::near(geometry, &survey, choice, window);
+        return Ok(Solved { mesh, source: Source::Ran, seconds, processes });
+    }
+    let Single { geometry, survey, spectrum, source, seconds } = singles.solve(path, problem, count, watch)?;
+    let processes = if source == Source::Ran { spectrum.timings.processes } else { 0 };
+    Ok(Solved { mesh: MeshSpectrum::new(geometry, &survey, choice, &spectrum, count), source, seconds, processes })
 }
 
 /// How many meshes were begun and are done.

@@ -14,6 +14,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
+pub(super) use self::reading::prepare;
 use super::{
     Problem, Source, Stage,
     costs::Costs,
@@ -175,7 +176,7 @@ impl Library {
         if let Some(refusal) = facts.survey.refusal() {
             return Err(Missing::Failed(refusal.into()));
         }
-        self.made((facts.geometry, problem), count, &|| reading::prepare(file, problem, watch), watch)
+        self.made((facts.geometry, problem), count, &|| prepare(file, problem, watch), watch)
     }
 
     /// At least `count` eigenvalues of a mesh that is in no file, or all it has: known under its geometry, as if it

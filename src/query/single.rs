@@ -1,16 +1,16 @@
 //! The spectrum of a mesh file on its own: what a study does for each of its models.
 
-use std::{path::Path, sync::Arc};
+use std::{path::Path, sync::Arc, time::Instant};
 
 use super::{
     Problem, Source,
-    library::{FileAt, Library, Missing},
+    library::{Facts, FileAt, Library, Missing, prepare},
     stamp::Stamp,
     trace::Trace,
 };
 use crate::{
     mesh::{Format, GeometryHash, Mesh, Survey},
-    spectrum::{Crew, Spectrum},
+    spectrum::{self, Crew, Spectrum, SpectrumError, Window},
     store::Store,
     watch::Watch,
 };
@@ -27,6 +27,19 @@ pub struct Single {
     /// Where the spectrum came from.
     pub source: Source,
     /// How long the solve took, seconds; 0 when none ran.
+    pub seconds: f64,
+}
+
+/// The eigenvalues of a mesh file that are nearest to a λ, with what is known of the mesh.
+#[derive(Debug, Clone)]
+pub struct Near {
+    /// Hash of the canonical geometry.
+    pub geometry: GeometryHash,
+    /// Sizes, topology and defects.
+    pub survey: Survey,
+    /// As many eigenvalues as were asked for, or all there are.
+    pub window: Window,
+    /// How long the solve took, seconds.
     pub seconds: f64,
 }
 
@@ -71,6 +84,42 @@ impl Singles {
     /// # Errors
     /// [`SingleError`].
     pub fn solve(&self, path: &Path, problem: Problem, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
+        let (file, facts) = self.examine(path, watch)?;
+        let found = self.library.spectrum(file, &facts, problem, count, watch)?;
+        Ok(Single {
+            geometry: facts.geometry,
+            survey: facts.survey.clone(),
+            spectrum: found.spectrum,
+            source: found.source,
+            seconds: found.seconds,
+        })
+    }
+
+    /// The `count` eigenvalues nearest to `target` of the mesh in the file at `path`. Nothing of it is kept.
+    ///
+    /// # Errors
+    /// [`SingleError`].
+    pub fn near(
+        &self,
+        path: &Path,
+        problem: Problem,
+        target: f64,
+        count: usize,
+        watch: &dyn Watch,
+    ) -> Result<Near, SingleError> {
+        let (file, facts) = self.examine(path, watch)?;
+        let mesh = prepare(file, problem, watch)?;
+        let start = Instant::now();
+        let window = spectrum::near(&mesh, problem.choice, target, count, watch).map_err(|error| match error {
+            SpectrumError::Cancelled { .. } => SingleError::Cancelled,
+            error => SingleError::Failed(error.to_string()),
+        })?;
+        let seconds = start.elapsed().as_secs_f64();
+        Ok(Near { geometry: facts.geometry, survey: facts.survey.clone(), window, seconds })
+    }
+
+    /// The file and what is known of its mesh.
+    fn examine<'a>(&self, path: &'a Path, watch: &dyn Watch) -> Result<(FileAt<'a>, Arc<Facts>), SingleError> {
         let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
         let format =
             Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
@@ -81,15 +130,7 @@ impl Singles {
         };
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
         let (content, facts) = self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missing)?;
-        let file = FileAt { path, format, content };
-        let found = self.library.spectrum(file, &facts, problem, count, watch)?;
-        Ok(Single {
-            geometry: facts.geometry,
-            survey: facts.survey.clone(),
-            spectrum: found.spectrum,
-            source: found.source,
-            seconds: found.seconds,
-        })
+        Ok((FileAt { path, format, content }, facts))
     }
 
     /// The first `count` eigenvalues, or more, of a mesh that is in no file.
@@ -121,7 +162,7 @@ mod tests {
     use super::*;
     use crate::{
         mesh::{self, synth},
-        spectrum::{self, Choice},
+        spectrum::Choice,
         store::Options,
         watch::{Unwanted, Unwatched},
     };

@@ -8,7 +8,7 @@
 //!
 //! # CSV
 //!
-//! `mesh,k,eigenvalue,error`: k from 1, `error` a bound on the eigenvalue's error.
+//! `mesh,k,eigenvalue,error`: k from 1 for the first eigenvalue of the mesh, `error` a bound on the eigenvalue's error.
 //!
 //! # `.ev`
 //!
@@ -31,7 +31,7 @@ use crate::{
     laplacian::{Boundary, Mass, Operator, Triangulation},
     mesh::{GeometryHash, Survey},
     query::Source,
-    spectrum::{Choice, Spectrum},
+    spectrum::{Choice, Count, Spectrum, Window},
 };
 
 mod summary;
@@ -78,6 +78,8 @@ pub struct MeshSpectrum {
     pub order: usize,
     /// What was done to the mesh, and what else is to be known.
     pub notes: Vec<String>,
+    /// How many eigenvalues lie below the first one of these: 0 unless those near some λ were asked for.
+    pub below: usize,
     /// λ ascending, zeros exactly 0: as many as were asked for, or all there are.
     pub eigenvalues: Vec<f64>,
     /// For each of them a bound on its error, in its unit.
@@ -98,33 +100,39 @@ pub struct InertiaCount {
 }
 
 impl MeshSpectrum {
-    /// The first `count` eigenvalues of the mesh in `file`.
+    /// The first `count` eigenvalues of a mesh; the file's name is left empty.
     #[must_use]
-    pub fn new(
-        file: String,
-        geometry: GeometryHash,
-        survey: &Survey,
-        choice: Choice,
-        spectrum: &Spectrum,
-        count: usize,
-    ) -> Self {
+    pub fn new(geometry: GeometryHash, survey: &Survey, choice: Choice, spectrum: &Spectrum, count: usize) -> Self {
         let (mut eigenvalues, mut errors) = (spectrum.eigenvalues(), spectrum.residuals());
         eigenvalues.truncate(count);
         errors.truncate(count);
-        // A store may know of more bands than were needed; that must not show.
+        // A store may know of more bands than were needed: those above the last eigenvalue are no part of the proof.
         let last = eigenvalues.last().copied().unwrap_or(0.0);
-        let certificate = spectrum
-            .bands
-            .iter()
-            .filter(|band| band.lower <= last)
-            .map(|band| InertiaCount {
-                part: band.part,
-                shift: (band.upper < f64::MAX).then_some(band.upper),
-                below: band.above,
-            })
-            .collect();
+        let bands = spectrum.bands.iter().filter(|band| band.lower <= last);
+        let counts = bands.map(|band| Count { part: band.part, shift: band.upper, below: band.above }).collect();
+        let window = Window {
+            values: eigenvalues,
+            errors,
+            below: 0,
+            certificate: counts,
+            order: spectrum.order,
+            measure: spectrum.measure,
+            notes: spectrum.notes.clone(),
+            timings: spectrum.timings.clone(),
+        };
+        Self::near(geometry, survey, choice, window)
+    }
+
+    /// Some eigenvalues of a mesh that follow each other; the file's name is left empty.
+    #[must_use]
+    pub fn near(geometry: GeometryHash, survey: &Survey, choice: Choice, window: Window) -> Self {
+        let certificate = window.certificate.iter().map(|count| InertiaCount {
+            part: count.part,
+            shift: (count.shift < f64::MAX).then_some(count.shift),
+            below: count.below,
+        });
         Self {
-            file,
+            file: String::new(),
             geometry: geometry.to_string(),
             vertices: survey.vertices,
             triangles: survey.triangles,
@@ -138,12 +146,13 @@ impl MeshSpectrum {
             mass: (choice.operator == Operator::Fem).then_some(choice.mass),
             boundary: choice.boundary,
             triangulation: choice.triangulation,
-            measure: spectrum.measure,
-            order: spectrum.order,
-            notes: spectrum.notes.clone(),
-            eigenvalues,
-            errors,
-            certificate,
+            measure: window.measure,
+            order: window.order,
+            certificate: certificate.collect(),
+            notes: window.notes,
+            below: window.below,
+            eigenvalues: window.values,
+            errors: window.errors,
         }
     }
 
@@ -247,7 +256,7 @@ impl Spectra {
         let mut writer = ::csv::Writer::from_writer(out);
         writer.write_record(["mesh", "k", "eigenvalue", "error"])?;
         for spectrum in &self.spectra {
-            for (k, (value, error)) in (1_usize..).zip(spectrum.eigenvalues.iter().zip(&spectrum.errors)) {
+            for (k, (value, error)) in (spectrum.below + 1..).zip(spectrum.eigenvalues.iter().zip(&spectrum.errors)) {
                 writer.write_record([&spectrum.file, &k.to_string(), &format!("{value:?}"), &format!("{error:?}")])?;
             }
         }
@@ -308,7 +317,7 @@ fn text(spectrum: &MeshSpectrum, seconds: f64) -> String {
         Operator::Cot => "λ · vertices",
     };
     let _ = writeln!(text, "\n  {:>5}  {:>22}  {scaled:>16}", "k", "λ");
-    for (k, value) in (1_usize..).zip(&spectrum.eigenvalues) {
+    for (k, value) in (spectrum.below + 1..).zip(&spectrum.eigenvalues) {
         let _ = writeln!(text, "  {k:>5}  {value:>22?}  {:>16.8}", value * spectrum.measure);
     }
     text
@@ -365,6 +374,7 @@ mod tests {
             measure: 12.5,
             order: 499,
             notes: vec![],
+            below: 0,
             eigenvalues: vec![0.0, 1e-7 / 3.0, 0.1 + 0.2, 123_456.789],
             errors: vec![0.0, 1e-19, 1.5e-15, 2e-10],
             certificate: vec![InertiaCount { part: 1, shift: Some(2.5), below: 3 }],

@@ -229,8 +229,8 @@ impl<'a> Krylov<'a> {
     /// then is one pass of orthogonalisation enough: it multiplies what orthogonality the basis lacks with what it
     /// removes.
     ///
-    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless the basis is in
-    /// double precision.
+    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless the basis is
+    /// in double precision.
     fn recur(&mut self) -> Square {
         let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
         let mut sum = [Square::default()];

@@ -87,6 +87,20 @@ impl Piece {
         0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure
     }
 
+    /// How many eigenvalues lie below a λ of the mesh, or below one a little above it where a shift there will not do.
+    ///
+    /// # Errors
+    /// When cancelled, or when no shift there will do.
+    pub(super) fn below(&self, lambda: f64, tools: &mut Tools, poll: &mut Poll) -> Result<usize, Advance> {
+        let (sigma, step) = (lambda / self.unit, 0.013 * self.first_half());
+        for attempt in 0..60 {
+            if let Some(count) = self.factor(tools, sigma + f64::from(attempt) * step, poll)? {
+                return Ok(count);
+            }
+        }
+        Err(Advance::Uncertified { at: lambda })
+    }
+
     /// A beginning of a chain below a λ of the mesh: its end, and what the process there sees on its right side. `None`
     /// when it is at zero.
     ///
@@ -222,8 +236,8 @@ impl Piece {
         self.finish(shift, found)
     }
 
-    /// The beginning of the band after these, up to σ: the first `count` eigenvalues on the right side of the process at
-    /// their end. `None` when the count at σ is another one.
+    /// The beginning of the band after these, up to σ: the first `count` eigenvalues on the right side of the process
+    /// at their end. `None` when the count at σ is another one.
     ///
     /// # Errors
     /// When cancelled.

@@ -28,115 +28,183 @@ pub struct Window {
     pub below: usize,
     /// The counts: one below the stretch and one above it, at least, for every piece that is not solved whole.
     pub certificate: Vec<Count>,
+    /// As in [`Spectrum::order`].
+    pub order: usize,
+    /// As in [`Spectrum::measure`].
+    pub measure: f64,
+    /// As in [`Spectrum::notes`].
+    pub notes: Vec<String>,
     /// What it took, by part.
     pub timings: Timings,
 }
 
-pub(super) fn between(laplacian: &Laplacian, range: Range<f64>, watch: &dyn Watch) -> Result<Window, SpectrumError> {
-    let unit = laplacian.unit();
-    let cancelled = || SpectrumError::Cancelled { finished: Vec::new() };
-    let (mut poll, pulse) = (Poll::new(watch), Pulse::new(watch));
-    let mut tools = Tools::default();
-    let (small, large) = pieces(laplacian);
-    let mut found: Vec<(f64, f64)> = Vec::new();
-    let mut below = 0;
-    let mut certificate = Vec::new();
-    let mut take = |value: f64, error: f64, below: &mut usize| {
-        if value < range.start {
-            *below += 1;
-        } else if value <= range.end {
-            found.push((value, error));
-        }
-    };
-    for rows in &small {
-        if watch.cancelled() {
-            return Err(cancelled());
-        }
-        let all = dense(&laplacian.matrix.select(rows, &pulse)?)
-            .ok_or_else(|| SpectrumError::Refused("a small piece is too degenerate to solve".to_owned()))?;
-        for one in all {
-            take(one.value * unit, one.error * unit, &mut below);
-        }
+fn cancelled() -> SpectrumError {
+    SpectrumError::Cancelled { finished: Vec::new() }
+}
+
+/// Why the stretch from this λ has no certificate.
+fn refused(advance: Advance, start: f64) -> SpectrumError {
+    match advance {
+        Advance::Cancelled => cancelled(),
+        Advance::TooNear => SpectrumError::Uncertified { at: start, finished: Vec::new() },
+        Advance::Uncertified { at } => SpectrumError::Uncertified { at, finished: Vec::new() },
     }
-    poll.charge(Cost::Dense);
-    for (at, rows) in large.iter().enumerate() {
-        let number = at as u32 + 1;
-        let pencil = pencil(&laplacian.matrix.select(rows, &pulse)?, watch)?;
-        poll.charge(Cost::Ordering);
-        let mut stretch = Stretch::new(Piece::new(number, pencil, unit));
-        let failed = |advance| match advance {
-            Advance::Cancelled => cancelled(),
-            Advance::TooNear => SpectrumError::Uncertified { at: range.start, finished: Vec::new() },
-            Advance::Uncertified { at } => SpectrumError::Uncertified { at, finished: Vec::new() },
-        };
-        if range.start > 0.0 {
-            let (shift, count) = stretch.begin_below(range.start, &mut tools, &mut poll).map_err(failed)?;
-            below += count;
-            certificate.push(Count { part: number, shift, below: count });
+}
+
+/// The pieces of a mesh, ready to be looked at anywhere.
+struct Pieces<'a> {
+    laplacian: &'a Laplacian,
+    /// All eigenvalues of the small ones, with bounds.
+    small: Vec<(f64, f64)>,
+    large: Vec<Piece>,
+    tools: Tools,
+    poll: Poll<'a>,
+}
+
+impl<'a> Pieces<'a> {
+    fn new(laplacian: &'a Laplacian, watch: &'a dyn Watch) -> Result<Self, SpectrumError> {
+        let unit = laplacian.unit();
+        let (mut poll, pulse) = (Poll::new(watch), Pulse::new(watch));
+        let (rows, large_rows) = pieces(laplacian);
+        let mut small: Vec<(f64, f64)> = Vec::new();
+        for rows in &rows {
+            if watch.cancelled() {
+                return Err(cancelled());
+            }
+            let all = dense(&laplacian.matrix.select(rows, &pulse)?)
+                .ok_or_else(|| SpectrumError::Refused("a small piece is too degenerate to solve".to_owned()))?;
+            small.extend(all.iter().map(|one| (one.value * unit, one.error * unit)));
         }
-        while !stretch.finished() && stretch.frontier() <= range.end {
-            let done = stretch.bands.len();
-            stretch.advance(&mut tools, &mut poll).map_err(failed)?;
-            for band in &stretch.bands[done..] {
-                certificate.push(Count { part: number, shift: band.upper, below: band.above });
-                for (&value, &error) in band.values.iter().zip(&band.errors) {
-                    take(value, error, &mut below);
+        poll.charge(Cost::Dense);
+        let mut large = Vec::with_capacity(large_rows.len());
+        for (at, rows) in large_rows.iter().enumerate() {
+            let pencil = pencil(&laplacian.matrix.select(rows, &pulse)?, watch)?;
+            poll.charge(Cost::Ordering);
+            large.push(Piece::new(at as u32 + 1, pencil, unit));
+        }
+        Ok(Self { laplacian, small, large, tools: Tools::default(), poll })
+    }
+
+    /// How many eigenvalues lie below λ, or below one a little above it where λ is too near to an eigenvalue.
+    fn below(&mut self, lambda: f64) -> Result<usize, SpectrumError> {
+        let mut count = self.small.iter().filter(|(value, _)| *value < lambda).count();
+        for piece in &self.large {
+            count +=
+                piece.below(lambda, &mut self.tools, &mut self.poll).map_err(|advance| refused(advance, lambda))?;
+        }
+        Ok(count)
+    }
+
+    /// All eigenvalues in a range, ends included.
+    fn between(&mut self, range: &Range<f64>) -> Result<Window, SpectrumError> {
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        let mut below = 0;
+        let mut certificate = Vec::new();
+        let mut take = |value: f64, error: f64, below: &mut usize| {
+            if value < range.start {
+                *below += 1;
+            } else if value <= range.end {
+                found.push((value, error));
+            }
+        };
+        for &(value, error) in &self.small {
+            take(value, error, &mut below);
+        }
+        for piece in &self.large {
+            let mut stretch = Stretch::new(piece);
+            let failed = |advance| refused(advance, range.start);
+            if range.start > 0.0 {
+                let (shift, count) =
+                    stretch.begin_below(range.start, &mut self.tools, &mut self.poll).map_err(failed)?;
+                below += count;
+                certificate.push(Count { part: piece.number, shift, below: count });
+            }
+            while !stretch.finished() && stretch.frontier() <= range.end {
+                let done = stretch.bands.len();
+                stretch.advance(&mut self.tools, &mut self.poll).map_err(failed)?;
+                for band in &stretch.bands[done..] {
+                    certificate.push(Count { part: piece.number, shift: band.upper, below: band.above });
+                    for (&value, &error) in band.values.iter().zip(&band.errors) {
+                        take(value, error, &mut below);
+                    }
                 }
             }
         }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (values, errors) = found.into_iter().unzip();
+        self.poll.charge(Cost::Rest);
+        Ok(Window {
+            values,
+            errors,
+            below,
+            certificate,
+            order: self.laplacian.matrix.order(),
+            measure: self.laplacian.measure(),
+            notes: self.laplacian.notes.clone(),
+            timings: self.poll.meter.timings.clone(),
+        })
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (values, errors) = found.into_iter().unzip();
-    poll.charge(Cost::Rest);
-    Ok(Window { values, errors, below, certificate, timings: poll.meter.timings })
 }
 
-/// The `count` eigenvalues nearest to a target, by windows around it that widen until they hold as many.
+pub(super) fn between(laplacian: &Laplacian, range: &Range<f64>, watch: &dyn Watch) -> Result<Window, SpectrumError> {
+    Pieces::new(laplacian, watch)?.between(range)
+}
+
+/// The `count` eigenvalues nearest to a target. Inertia counts, at a tenth of the price of a process each, say first
+/// how far from it they reach.
 pub(super) fn near(
     laplacian: &Laplacian,
     target: f64,
     count: usize,
     watch: &dyn Watch,
 ) -> Result<Window, SpectrumError> {
-    let count = count.min(laplacian.matrix.order());
+    let order = laplacian.matrix.order();
+    let count = count.min(order);
+    let mut pieces = Pieces::new(laplacian, watch)?;
     // By Weyl's law λ grows by 4π over the area from one eigenvalue to the next.
     let mut half = 4.0 * std::f64::consts::PI / laplacian.measure() * (0.5 * count as f64 + 2.0);
-    let mut timings = Timings::default();
     loop {
-        let mut window = between(laplacian, (target - half).max(0.0)..target + half, watch)?;
-        timings.add(&window.timings);
-        let whole = window.below == 0 && window.values.len() == laplacian.matrix.order();
-        if window.values.len() >= count || whole {
-            let mut by_distance: Vec<usize> = (0..window.values.len()).collect();
-            by_distance.sort_by(|&a, &b| {
-                let distance = |at: usize| (window.values[at] - target).abs();
-                distance(a).total_cmp(&distance(b))
-            });
-            by_distance.truncate(count);
-            // The nearest ones are neighbours of each other.
-            let first = by_distance.iter().copied().min().unwrap_or(0);
-            window.below += first;
-            window.values = window.values[first..first + by_distance.len()].to_vec();
-            window.errors = window.errors[first..first + by_distance.len()].to_vec();
-            return Ok(Window { timings, ..window });
+        let start = (target - half).max(0.0);
+        let below = if start == 0.0 { 0 } else { pieces.below(start)? };
+        let inside = pieces.below(target + half)?.saturating_sub(below);
+        if inside < count && below + inside < order {
+            half *= (1.1 * count as f64 / inside.max(1) as f64).clamp(1.2, 8.0);
+            continue;
         }
-        half *= 1.6;
+        let mut window = pieces.between(&(start..target + half))?;
+        if window.values.len() < count {
+            // A count was taken a little above where it was asked for.
+            half *= 1.2;
+            continue;
+        }
+        let mut by_distance: Vec<usize> = (0..window.values.len()).collect();
+        by_distance.sort_by(|&a, &b| {
+            let distance = |at: usize| (window.values[at] - target).abs();
+            distance(a).total_cmp(&distance(b))
+        });
+        by_distance.truncate(count);
+        // The nearest ones are neighbours of each other.
+        let first = by_distance.iter().copied().min().unwrap_or(0);
+        window.below += first;
+        window.values = window.values[first..first + count].to_vec();
+        window.errors = window.errors[first..first + count].to_vec();
+        return Ok(window);
     }
 }
 
 /// A stretch of the chain of one piece, band by band on one thread.
 #[derive(Debug)]
-struct Stretch {
-    piece: Piece,
+struct Stretch<'a> {
+    piece: &'a Piece,
     bands: Vec<Band>,
     end: End,
     /// The right side of the last shift.
     right: Side,
 }
 
-impl Stretch {
+impl<'a> Stretch<'a> {
     /// Begins at zero.
-    fn new(piece: Piece) -> Self {
+    fn new(piece: &'a Piece) -> Self {
         let end = piece.end(&[]);
         Self { piece, bands: Vec::new(), end, right: Side::default() }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::values::{count, vertices};
+use super::values::{count, target, vertices};
 use crate::{
     laplacian::{Boundary, Choice, Mass, Operator, Triangulation},
     query::Problem,
@@ -18,6 +18,7 @@ fails is named on standard error, the others are written, and the exit code is 1
 Examples:
   tui spectrum bunny.obj
   tui spectrum a.off b.off --count 500 --format csv --out spectra.csv
+  tui spectrum bunny.obj --near 2000 --count 20
   tui spectrum bunny.ply --mass lumped --out bunny.ev        readable with LaPy's read_ev";
 
 /// `tui spectrum`.
@@ -30,6 +31,9 @@ pub(in crate::cli) struct SpectrumArguments {
     /// How many eigenvalues, the zeros included
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = count)]
     pub(in crate::cli) count: usize,
+    /// Those nearest to λ instead of the first ones, without those below them; not kept in the cache
+    #[arg(long, value_name = "λ", value_parser = target, allow_negative_numbers = true)]
+    pub(in crate::cli) near: Option<f64>,
     /// Re-mesh to so many vertices first
     #[arg(long, value_name = "N", value_parser = vertices)]
     pub(in crate::cli) remesh: Option<usize>,

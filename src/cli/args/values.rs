@@ -9,6 +9,12 @@ pub(super) fn count(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|&count| count >= 1).ok_or_else(|| "a number from 1 is needed".to_owned())
 }
 
+/// A λ to look for eigenvalues at.
+pub(super) fn target(text: &str) -> Result<f64, String> {
+    let target = text.parse().ok().filter(|target: &f64| target.is_finite() && *target >= 0.0);
+    target.ok_or_else(|| "a number from 0 is needed".to_owned())
+}
+
 /// A number of vertices that can be re-meshed to.
 pub(super) fn vertices(text: &str) -> Result<usize, String> {
     let (least, greatest) = (remesh::VERTICES.start(), remesh::VERTICES.end());

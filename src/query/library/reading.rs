@@ -110,7 +110,7 @@ impl Library {
 
 /// The mesh that a problem on the mesh in `file` is on, in its canonical form; read as [`Library::examine`]
 /// reads.
-pub(super) fn prepare(file: FileAt<'_>, problem: Problem, watch: &dyn Watch) -> Result<Mesh, Missing> {
+pub(in crate::query) fn prepare(file: FileAt<'_>, problem: Problem, watch: &dyn Watch) -> Result<Mesh, Missing> {
     let (path, FileAt { format, content, .. }) = (file.path.to_owned(), file);
     let read = move || load(FileAt { path: &path, format, content }).map(|mesh| mesh.canonical());
     let canonical = aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??;
