@@ -28,11 +28,11 @@ pub struct Window {
     pub below: usize,
     /// The counts: one below the stretch and one above it, at least, for every piece that is not solved whole.
     pub certificate: Vec<Count>,
-    /// As in [`Spectrum::order`].
+    /// As in [`Spectrum::order`](super::Spectrum::order).
     pub order: usize,
-    /// As in [`Spectrum::measure`].
+    /// As in [`Spectrum::measure`](super::Spectrum::measure).
     pub measure: f64,
-    /// As in [`Spectrum::notes`].
+    /// As in [`Spectrum::notes`](super::Spectrum::notes).
     pub notes: Vec<String>,
     /// What it took, by part.
     pub timings: Timings,
