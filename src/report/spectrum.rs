@@ -296,10 +296,10 @@ fn text(spectrum: &MeshSpectrum, seconds: f64) -> String {
             significant(spectrum.area)
         );
     }
-    let found = if spectrum.eigenvalues.len() == spectrum.order {
-        format!("all {} eigenvalues", spectrum.order)
-    } else {
-        format!("{} of {} eigenvalues", spectrum.eigenvalues.len(), spectrum.order)
+    let found = match (spectrum.eigenvalues.len(), spectrum.below) {
+        (found, _) if found == spectrum.order => format!("all {found} eigenvalues"),
+        (found, 0) => format!("{found} of {} eigenvalues", spectrum.order),
+        (found, below) => format!("{found} of {} eigenvalues, with {below} below them", spectrum.order),
     };
     let took = if seconds > 0.0 { format!(" in {} s", number(seconds, 2)) } else { ", from the cache".to_owned() };
     let _ = writeln!(text, "  spectrum  {}: {found}{took}", spectrum.problem());
@@ -387,6 +387,8 @@ mod tests {
         spectra.push(example(), Source::Ran, 0.25, 2);
         let cot = MeshSpectrum { operator: Operator::Cot, mass: None, boundary_edges: 3, genus: None, ..example() };
         spectra.push(MeshSpectrum { file: "b.obj".to_owned(), measure: 500.0, ..cot }, Source::Disk, 0.0, 0);
+        let near = MeshSpectrum { file: "c.off".to_owned(), below: 12, ..example() };
+        spectra.push(near, Source::Ran, 0.5, 1);
         spectra.failed.push(Failed { file: "x.off".to_owned(), reason: "there are no faces".to_owned() });
         spectra
     }
@@ -425,10 +427,11 @@ mod tests {
         spectra().write_csv(&mut bytes).unwrap();
         let mut reader = ::csv::Reader::from_reader(&bytes[..]);
         let rows: Vec<_> = reader.records().map(|record| record.unwrap()).collect();
-        assert_eq!(rows.len(), 8);
+        assert_eq!(rows.len(), 12);
         let read: Vec<f64> = rows.iter().take(4).map(|row| row[2].parse().unwrap()).collect();
         assert_eq!(read, example().eigenvalues);
         assert_eq!((&rows[4][0], &rows[4][1]), ("b.obj", "1"));
+        assert_eq!((&rows[8][0], &rows[8][1]), ("c.off", "13"));
     }
 
     #[test]
