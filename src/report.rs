@@ -22,6 +22,8 @@ pub use self::document::{
     ModelStatus, Origin, Parameters, Read, Run, RunModel, Selections, Skipped, SpectrumRow, StoreCounts,
 };
 
+pub(crate) use self::layout::plain;
+
 pub mod csv;
 mod document;
 pub mod figures;

@@ -372,6 +372,18 @@ fn spectra_of_some_meshes_survive_the_failure_of_others() {
     assert!(!room.home().join("cache").exists(), "--no-cache leaves nothing behind");
 }
 
+#[cfg(unix)]
+#[test]
+fn names_cannot_command_the_terminal() {
+    let room = Room::new();
+    let name = "\u{1b}[2J\u{7}\u{202e}x.off";
+    fs::write(room.path(name), "OFF\n2 0 0\n0 0 0\n1 0 0\n").unwrap();
+    let outcome = tui(&room, &["spectrum", name, "--no-cache"]);
+    assert_eq!(outcome.code, Some(1));
+    let shown = "\u{fffd}[2J\u{fffd}\u{fffd}x.off: there are no faces";
+    assert!(outcome.err.contains(shown) && !outcome.err.contains(['\u{1b}', '\u{7}', '\u{202e}']), "{:?}", outcome.err);
+}
+
 #[test]
 fn the_cache_is_counted_checked_and_emptied() {
     let room = Room::with_study();

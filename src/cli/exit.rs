@@ -6,6 +6,8 @@ use std::{
     process::ExitCode,
 };
 
+use crate::report::plain;
+
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
@@ -110,10 +112,11 @@ pub(super) fn explain(error: &clap::Error) -> Exit {
     }
 }
 
-/// Says something on standard error.
+/// Says something on standard error, without what a terminal would obey: names of files are part of it.
 pub(super) fn complain(text: &str) {
+    let lines: Vec<_> = text.lines().map(plain).collect();
     // Without a standard error there is nobody to tell.
-    let _ = writeln!(io::stderr().lock(), "tui: {text}");
+    let _ = writeln!(io::stderr().lock(), "tui: {}", lines.join("\n"));
 }
 
 /// The error and its causes in one line, each cause once.

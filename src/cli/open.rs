@@ -16,6 +16,7 @@ use super::{
 };
 use crate::{
     query::Settings,
+    report::plain,
     store,
     terminal::{self, Opening},
     workbench::{
@@ -83,7 +84,8 @@ impl Log {
         let log = fs::OpenOptions::new().create(true).append(true).open(file).map_err(failed)?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         let (name, version) = (env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        writeln!(&log, "# {name} {version} on {}, begun {now} s after 1970; seconds since then:", root.display())
+        let root = root.display().to_string();
+        writeln!(&log, "# {name} {version} on {}, begun {now} s after 1970; seconds since then:", plain(&root))
             .map_err(failed)?;
         Ok(Self(log))
     }

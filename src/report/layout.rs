@@ -13,7 +13,7 @@ pub(super) const NONE: &str = "–";
 
 /// Text from a file without what a terminal would obey: control characters and overrides of the writing direction
 /// become U+FFFD.
-pub(super) fn plain(text: &str) -> Cow<'_, str> {
+pub(crate) fn plain(text: &str) -> Cow<'_, str> {
     let harmful = |c: char| c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     if text.contains(harmful) { Cow::Owned(text.replace(harmful, "\u{fffd}")) } else { Cow::Borrowed(text) }
 }
