@@ -65,6 +65,20 @@ impl Axis {
         Self::linear((low / step).floor() * step, (high / step).ceil() * step)
     }
 
+    /// For values that grow like a power: logarithmic, as far as the positive ones reach and a little beyond, where
+    /// they span more than a decade or so and none is negative; else as [`Axis::around`].
+    pub(super) fn growing(values: impl IntoIterator<Item = f64> + Clone) -> Self {
+        let finite = || values.clone().into_iter().filter(|v| v.is_finite());
+        let negative = finite().any(|v| v < 0.0);
+        let positive = finite().filter(|v| *v > 0.0);
+        let ends = positive.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));
+        let (low, high) = (ends.0 / 1.25, ends.1 * 1.25);
+        if negative || high < 20.0 * low || !low.is_finite() {
+            return Self::around(values);
+        }
+        Self { low, high, logarithmic: true, whole: false }
+    }
+
     /// As [`Axis::around`] for values that lie between 0 and 1, and where 0 and 1 mean something.
     pub(super) fn ratios(values: impl IntoIterator<Item = f64> + Clone) -> Self {
         let mut finite = values.clone().into_iter().filter(|v| v.is_finite());
@@ -86,16 +100,9 @@ impl Axis {
     }
 
     /// Round values on the axis, at most about `most` of them, with their labels.
-    fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+    pub(super) fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         if self.logarithmic {
-            let mut ticks = Vec::new();
-            let mut power = 10_f64.powf(self.low.log10().floor());
-            while power <= self.high {
-                ticks.extend([1.0, 2.0, 5.0].map(|m| m * power));
-                power *= 10.0;
-            }
-            ticks.retain(|tick| (self.low..=self.high).contains(tick));
-            return ticks.into_iter().map(|tick| (tick, format!("{tick}"))).collect();
+            return self.decades(most);
         }
         let least = if self.whole { 1.0 } else { 0.0 };
         let step = round_step((self.high - self.low) / most.max(1) as f64).max(least);
@@ -107,6 +114,27 @@ impl Axis {
             .map(|n| n as f64 * step)
             .map(|tick| (tick, if large { number::short(tick) } else { format!("{tick:.decimals$}") }))
             .collect()
+    }
+
+    /// 1, 2 and 5 times powers of ten; the powers alone where there would be too many of a value that is no index.
+    fn decades(&self, most: usize) -> Vec<(f64, String)> {
+        let ticks = |digits: &[i32]| {
+            let powers = self.low.log10().floor() as i32..=self.high.log10().floor() as i32;
+            let all = powers.flat_map(|power| digits.iter().map(move |&digit| (digit, power)));
+            let ticks = all.map(|(digit, power)| {
+                let tick = f64::from(digit) * 10_f64.powi(power);
+                // Four columns at most.
+                let label = match power {
+                    0..4 => format!("{tick:.0}"),
+                    -2..0 => format!("{tick:.*}", power.unsigned_abs() as usize),
+                    _ => format!("{digit}e{power}"),
+                };
+                (tick, label)
+            });
+            ticks.filter(|(tick, _)| (self.low..=self.high).contains(tick)).collect::<Vec<_>>()
+        };
+        let all = ticks(&[1, 2, 5]);
+        if self.whole || all.len() <= most { all } else { ticks(&[1]) }
     }
 }
 
@@ -190,7 +218,8 @@ impl Plot {
         for (value, label) in self.x.ticks((field.width as usize / 9).max(1)) {
             let column = column_of(self.x.place(value), field.width);
             let wide = text::width(&label) as u16;
-            let start = (field.x + column).saturating_sub(wide / 2);
+            // At its middle below the tick, or as near to it as there is room.
+            let start = (field.x + column).saturating_sub(wide / 2).min(pane.width().saturating_sub(wide));
             if start < free || start + wide > pane.width() {
                 continue;
             }
@@ -271,6 +300,19 @@ mod tests {
         assert_eq!(Axis::ratios([0.01, 1.0]), Axis::linear(0.0, 1.0));
         let zero = Axis::around([0.0]);
         assert!(zero.low < 0.0 && zero.high > 0.0);
+    }
+
+    #[test]
+    fn an_axis_of_growing_values_is_logarithmic_where_they_span_decades() {
+        let axis = Axis::growing([0.0, 0.0008, f64::NAN, 0.8]);
+        assert!(axis.logarithmic && axis.low < 0.0008 && axis.high > 0.8, "{axis:?}");
+        let labels = |most| axis.ticks(most).into_iter().map(|(_, label)| label).collect::<Vec<_>>();
+        assert_eq!(labels(4), ["1e-3", "0.01", "0.1", "1"]);
+        assert_eq!(labels(20).len(), 10);
+        assert_eq!(Axis::growing([2e-5, 2.0]).ticks(3)[0].1, "1e-4");
+        assert_eq!(Axis::growing([1.0, 3.0]), Axis::around([1.0, 3.0]));
+        assert_eq!(Axis::growing([-1.0, 0.01, 100.0]), Axis::around([-1.0, 0.01, 100.0]));
+        assert_eq!(Axis::growing([0.0]), Axis::around([0.0]));
     }
 
     #[test]

@@ -78,6 +78,10 @@ fn cells(name: &str, row: &HonestRow) -> Vec<Cell> {
 
 /// The figure on D, where it was selected, beside the honest one with its interval.
 fn figure(honest: &[(String, Arc<Honest>)]) -> Figure {
+    // One axis for all, as long as the figures need: differences of hundredths are to be seen.
+    let rows = honest.iter().flat_map(|(_, honest)| &honest.rows);
+    let most = rows.flat_map(|row| [row.apparent, row.error.high]).fold(0.0, f64::max);
+    let top = ((most * 5.0).ceil() / 5.0).clamp(0.2, 1.0);
     let panel = |(name, honest): &(String, Arc<Honest>)| {
         let at = |offset: f64| (0..honest.rows.len()).map(move |at| at as f64 + offset).collect::<Vec<_>>();
         let bars = at(0.12).into_iter().zip(&honest.rows);
@@ -86,7 +90,7 @@ fn figure(honest: &[(String, Arc<Honest>)]) -> Figure {
         Panel {
             title: name.clone(),
             x: Axis::names("", honest.rows.iter().map(|row| row.method.name()).collect()),
-            y: Axis::linear("ε").within(0.0, 1.0),
+            y: Axis::linear("ε").within(0.0, top),
             layers: vec![
                 Layer::Points { name: "on D, selected on D".to_owned(), style: Style::marks(0, Mark::Cross), points },
                 Layer::Intervals {

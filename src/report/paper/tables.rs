@@ -98,14 +98,48 @@ pub(super) fn plans(rounds: usize) -> [Plan; 5] {
 
 /// Tables 1 to 4.
 pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
-    plans(head.parameters.0.rounds).iter().map(|plan| section(plan, rows)).collect()
+    let plans = plans(head.parameters.0.rounds);
+    let standing = standing(&plans, rows);
+    plans.iter().map(|plan| section(plan, rows, head.parameters.0.rounds, standing.as_deref())).collect()
+}
+
+/// Whether D is easier or harder than random splits: how often its figure is beyond those of all of them.
+fn standing(plans: &[Plan], rows: &[Rows]) -> Option<String> {
+    let (mut all, mut easier, mut harder) = (0_u32, 0_u32, 0_u32);
+    for plan in plans {
+        for rows in rows {
+            let Some(spread) = rows.splits.as_deref().map(plan.spread) else { continue };
+            let ours = (plan.entry)(rows).score.train;
+            let (below, above) = (ours < spread.low, ours > spread.high);
+            let (better, worse) = if plan.figure == "ε" { (below, above) } else { (above, below) };
+            all += 1;
+            easier += u32::from(better);
+            harder += u32::from(worse);
+        }
+    }
+    // Of SPLITS + 1 draws each is as likely to be the first of them.
+    let chance = f64::from(all) / (SPLITS + 1) as f64;
+    let (verdict, so) = match f64::from(easier) - f64::from(harder) {
+        lead if lead > 2.0 * chance => {
+            ("easier than", " Part of the way from the figures on D to those on Q may be that, and not the selection.")
+        }
+        lead if -lead > 2.0 * chance => ("harder than", ""),
+        _ => ("about as hard as", ""),
+    };
+    (all > 0).then(|| {
+        format!(
+            "This D is {verdict} such splits: of the {all} figures on D in Tables 1 to 4 that were computed on splits too, \
+             {easier} are better than on every split and {harder} worse than on any; a D drawn like them would have about \
+             {chance:.0} of each.{so}"
+        )
+    })
 }
 
 pub(super) fn paper(plan: &Plan, rows: &Rows) -> Option<Published> {
     rows.spectrum.column().map(|column| published(plan.row, column))
 }
 
-fn section(plan: &Plan, rows: &[Rows]) -> Section {
+fn section(plan: &Plan, rows: &[Rows], rounds: usize, standing: Option<&str>) -> Section {
     let row = |rows: &Rows| {
         let Entry { score, count } = (plan.entry)(rows);
         let known = paper(plan, rows);
@@ -143,14 +177,23 @@ fn section(plan: &Plan, rows: &[Rows]) -> Section {
             "*Splits* are {SPLITS} random choices of as many models of each class for D, from D and Q together: which models \
              the authors had in D is not published. From the least to the greatest figure that they give."
         ));
+        words.extend(standing.map(str::to_owned));
     }
     if plan.row == Row::Boosted {
         columns.push("mean sel with ties".to_owned());
         words.push(
             "`sel` counts the distinct eigenvalues that a class's strong classifier uses; *with ties* also counts those \
-             that had the same least error in a round. The paper's exceeds T, so it cannot be the former."
+             that had the same least error in a round."
                 .to_owned(),
         );
+        let known = rows.iter().filter_map(|rows| paper(plan, rows)).collect::<Vec<_>>();
+        let beyond = known.iter().filter(|known| known.count > rounds as f64).count();
+        if beyond > 0 {
+            words.push(format!(
+                "The paper's is greater than T = {rounds} for {beyond} of its {} spectra, so it cannot be the former.",
+                known.len()
+            ));
+        }
     }
     let table = Table { number: plan.number, title: plan.title.clone(), columns, rows: rows.iter().map(row).collect() };
     let heading = format!("Table {}: {}", plan.number, plan.title);

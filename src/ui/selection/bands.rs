@@ -18,7 +18,7 @@ const GUTTER: u16 = 7;
 const NAMED: u16 = 5;
 
 pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
-    let axis = Axis::around(marks.iter().flatten().flat_map(|mark| [mark.low, mark.high]));
+    let axis = Axis::growing(marks.iter().flatten().flat_map(|mark| [mark.low, mark.high]));
     let (step, first, count) = columns(state, marks.len(), pane.width().saturating_sub(GUTTER));
     let named = step >= NAMED && pane.height() >= 8;
     let height = pane.height().saturating_sub(1 + u16::from(named));
@@ -99,10 +99,16 @@ fn side(axis: &Axis, pane: &mut Pane<'_>, height: u16) {
     for row in 0..height {
         pane.dot(GUTTER - 2, row, '│', style);
     }
-    for part in [0.0, 0.5, 1.0] {
-        let value = axis.low + part * (axis.high - axis.low);
-        let row = ((1.0 - part) * f64::from(height - 1)).round() as u16;
-        pane.put_right(GUTTER - 3, row, &format!("{value:.*}", decimals(axis)), Role::Faint);
+    let ticks = if axis.logarithmic {
+        axis.ticks(height as usize / 2)
+    } else {
+        let value = |part: f64| axis.low + part * (axis.high - axis.low);
+        [0.0, 0.5, 1.0].map(|part| (value(part), format!("{:.*}", decimals(axis), value(part)))).to_vec()
+    };
+    for (value, label) in ticks {
+        // The row that holds the weight at this value; the topmost one that at the upper end, too.
+        let row = height - 1 - ((axis.place(value) * f64::from(height)) as u16).min(height - 1);
+        pane.put_right(GUTTER - 3, row, &label, Role::Faint);
         pane.dot(GUTTER - 2, row, '┤', style);
     }
 }

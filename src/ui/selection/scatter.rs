@@ -18,6 +18,9 @@ pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
     let names = legend(state, &classes, &mut pane.part(rest));
     pane::cut_top(&mut rest, names);
     let shown = || classes.iter().flat_map(|class| &marks[*class]);
+    let y = Axis::growing(shown().flat_map(|mark| [mark.low, mark.high]));
+    // A logarithmic axis has no zero: what begins there begins at its end.
+    let floor = if y.logarithmic { y.low } else { f64::NEG_INFINITY };
     let mut series = Vec::new();
     let mut points = Vec::new();
     // The parameter's class comes first in the list and is drawn last, over the others.
@@ -25,25 +28,19 @@ pub(super) fn draw(state: &State, marks: &[Vec<Mark>], pane: &mut Pane<'_>) {
         for mark in &marks[class] {
             let index = f64::from(mark.index);
             series.push(Series {
-                points: vec![(index, mark.low), (index, mark.high)],
+                points: vec![(index, mark.low.max(floor)), (index, mark.high.max(floor))],
                 role: Role::Class(place),
                 stroke: Stroke::Solid,
                 plain: '|',
             });
             points.push(plot::Mark {
-                at: (index, mark.mean),
+                at: (index, mark.mean.max(floor)),
                 character: pane.look().mark(place),
                 role: Role::Class(place),
             });
         }
     }
-    let plot = Plot {
-        x: Axis::indices(state.answer.settings.kmax, false),
-        y: Axis::around(shown().flat_map(|mark| [mark.low, mark.high]).chain([0.0])),
-        series,
-        marks: points,
-        guide: None,
-    };
+    let plot = Plot { x: Axis::indices(state.answer.settings.kmax, true), y, series, marks: points, guide: None };
     plot.draw(&mut pane.part(rest));
 }
 
