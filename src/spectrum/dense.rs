@@ -3,7 +3,7 @@
 use super::{
     lanes::WIDTH,
     pencil::has_kernel,
-    slice::Found,
+    slice::{Found, in_lambda},
     small::{eigen, identity},
 };
 use crate::laplacian::Symmetric;
@@ -41,7 +41,7 @@ pub(super) fn dense(matrix: &Symmetric) -> Option<Vec<Found>> {
         .zip(&direct)
         .map(|(&inverse, &direct)| {
             let shifted = inverse.min(largest) + tau;
-            let (first, second) = (unit * shifted * shifted / tau, unit * largest);
+            let (first, second) = (in_lambda(unit / tau, shifted), unit * largest);
             let (value, error) = if first <= second { (inverse, first) } else { (direct, second) };
             Found::exactly(value, error)
         })

@@ -167,8 +167,8 @@ fn converged(list: &[Ritz], scales: Scales, floor: f64) -> Side {
     side
 }
 
-/// An error of θ at a distance from the shift, as one of λ = σ + 1/θ.
-fn in_lambda(error: f64, distance: f64) -> f64 {
+/// An error of θ at a distance from the shift, as one of λ = σ + 1/θ; infinite where θ may as well be zero.
+pub(super) fn in_lambda(error: f64, distance: f64) -> f64 {
     // 1/(θ − e) − 1/θ = e/(θ (θ − e))
     let shrunk = 1.0 / distance - error;
     if shrunk > 0.0 { error * distance / shrunk } else { f64::INFINITY }
