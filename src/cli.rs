@@ -16,7 +16,6 @@ use clap::Parser as _;
 
 use self::args::{Arguments, Command};
 pub use self::exit::Exit;
-use crate::query;
 
 mod args;
 mod cache;
@@ -36,7 +35,6 @@ mod synth;
 /// Runs the program.
 #[must_use]
 pub fn run() -> ExitCode {
-    query::share_heap();
     let exit = match Arguments::try_parse() {
         Ok(arguments) => exit::conclude(dispatch(arguments)),
         Err(error) => exit::explain(&error),

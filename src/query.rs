@@ -21,7 +21,6 @@ pub use self::{
 };
 
 pub(crate) use self::{
-    heap::share as share_heap,
     inquiry::{Members, Piece},
     pool::News,
 };

@@ -1,20 +1,4 @@
-//! The process's memory: how much it has, how threads share it, and what is free given back to the system.
-
-/// Lets all threads take their memory from one heap; to be called before there is a second thread.
-///
-/// The GNU C library gives each thread a heap of its own, and what one thread has freed no other can have. Solves and
-/// studies take memory in few and large pieces, so sharing costs no time that can be measured, and while the 380 models
-/// of SHREC 2007 are solved on four threads the process has a fifth less at its most.
-pub(crate) fn share() {
-    #[cfg(all(target_os = "linux", target_env = "gnu"))]
-    {
-        #[expect(unsafe_code, reason = "the function has no safe name")]
-        // SAFETY: it sets a limit that is read when a thread first takes memory; both arguments are numbers.
-        unsafe {
-            libc::mallopt(libc::M_ARENA_MAX, 1);
-        }
-    }
-}
+//! The process's memory: how much it has, and what is free given back to the system.
 
 /// Gives back what this process's allocator holds and nobody uses.
 ///

@@ -15,8 +15,8 @@ use crate::watch::Watch;
 /// How long a helper without work waits before it looks around again.
 const NAP: Duration = Duration::from_millis(2);
 
-/// Scratch memory is kept for the next mesh where the largest one has had no more rows: then it is about 60 MB.
-const KEPT: usize = 20_000;
+/// Scratch memory is kept for the next mesh where the largest one has had no more rows: then it is about 40 MB.
+const KEPT: usize = 12_000;
 
 /// A mesh of this many times fewer rows begins anew rather than hold on to it.
 const WASTED: usize = 3;
