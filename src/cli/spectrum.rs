@@ -55,8 +55,7 @@ pub(super) fn run(arguments: &SpectrumArguments) -> Result<Exit, Failure> {
     for (path, solved) in arguments.meshes.iter().zip(solved) {
         let file = path.display().to_string();
         match solved {
-            Ok(Solved { mesh, source, seconds, processes }) => {
-                let spectrum = MeshSpectrum { file, ..mesh };
+            Ok(Solved { spectrum, source, seconds, processes }) => {
                 if spectrum.eigenvalues.len() < arguments.count {
                     complain(&format!(
                         "{}: the mesh has {} eigenvalues, fewer than the {} asked for",
@@ -126,9 +125,9 @@ fn solve(
     found.into_iter().map(|(_, solved)| solved).collect()
 }
 
-/// What is reported of a mesh, without the file's name.
+/// What is reported of a mesh.
 struct Solved {
-    mesh: MeshSpectrum,
+    spectrum: MeshSpectrum,
     source: Source,
     seconds: f64,
     processes: usize,
@@ -141,16 +140,17 @@ fn one(
     problem: Problem,
     watch: &dyn Watch,
 ) -> Result<Solved, SingleError> {
-    let (choice, count) = (problem.choice, arguments.count);
+    let (file, choice, count) = (path.display().to_string(), problem.choice, arguments.count);
     if let Some(target) = arguments.near {
         let Near { geometry, survey, window, seconds } = singles.near(path, problem, target, count, watch)?;
         let processes = window.timings.processes;
-        let mesh = MeshSpectrum::near(geometry, &survey, choice, window);
-        return Ok(Solved { mesh, source: Source::Ran, seconds, processes });
+        let spectrum = MeshSpectrum::near(file, geometry, &survey, choice, window);
+        return Ok(Solved { spectrum, source: Source::Ran, seconds, processes });
     }
     let Single { geometry, survey, spectrum, source, seconds } = singles.solve(path, problem, count, watch)?;
     let processes = if source == Source::Ran { spectrum.timings.processes } else { 0 };
-    Ok(Solved { mesh: MeshSpectrum::new(geometry, &survey, choice, &spectrum, count), source, seconds, processes })
+    let spectrum = MeshSpectrum::new(file, geometry, &survey, choice, &spectrum, count);
+    Ok(Solved { spectrum, source, seconds, processes })
 }
 
 /// How many meshes were begun and are done.

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Serialize, de::DeserializeOwned};
+
 use super::{
     db::{Cohort, Db, Knobs, SampleKey, leave, sample, trace},
     library::Failure,
@@ -49,13 +51,24 @@ pub(crate) fn honest_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<A
     let sample = sample(db, unscaled(db, cohort, knobs.kmax(db)))?;
     let how = format!("{scale:?} {distance:?} {plan:?} {methods:?}");
     let key = Key::new("honest").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
-    let store = db.library().store();
     trace(db).executed(Query::HonestRows);
-    if let Some(kept) = store.get::<Honest>(&key) {
-        return Ok(Arc::new(kept));
+    kept(db, &key, || {
+        Ok(study::honest(&sample, scale, distance, &methods, plan, db.revoked()).unwrap_or_else(|_| leave(db)))
+    })
+}
+
+/// What the store has under this key, else what `make` gives, which is then kept there.
+fn kept<T: Serialize + DeserializeOwned>(
+    db: &dyn Db,
+    key: &Key,
+    make: impl FnOnce() -> Result<T, Failure>,
+) -> Result<Arc<T>, Failure> {
+    let store = db.library().store();
+    if let Some(known) = store.get::<T>(key) {
+        return Ok(Arc::new(known));
     }
-    let found = study::honest(&sample, scale, distance, &methods, plan, db.revoked()).unwrap_or_else(|_| leave(db));
-    store.put(&key, &found);
+    let found = make()?;
+    store.put(key, &found);
     Ok(Arc::new(found))
 }
 
@@ -75,15 +88,11 @@ pub(crate) fn tuned_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
     for (_, sample) in &samples {
         key = key.field(&digest(sample));
     }
-    let store = db.library().store();
-    trace(db).executed(Query::HonestRows);
-    if let Some(kept) = store.get::<Tuned>(&key) {
-        return Ok(Arc::new(kept));
-    }
-    let found = study::tuned(&samples, &recipes, plan, db.revoked()).unwrap_or_else(|_| leave(db));
-    let found = found.ok_or_else(|| Failure::from("no model takes part"))?;
-    store.put(&key, &found);
-    Ok(Arc::new(found))
+    trace(db).executed(Query::TunedRows);
+    kept(db, &key, || {
+        let found = study::tuned(&samples, &recipes, plan, db.revoked()).unwrap_or_else(|_| leave(db));
+        found.ok_or_else(|| Failure::from("no model takes part"))
+    })
 }
 
 /// The paper's figures on other splits of the models; kept as the above is.
@@ -94,14 +103,8 @@ pub(crate) fn split_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
     let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
     let how = format!("{distance:?} {rounds} {SPLITS} with searches");
     let key = Key::new("splits").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
-    let store = db.library().store();
-    trace(db).executed(Query::HonestRows);
-    if let Some(kept) = store.get::<Splits>(&key) {
-        return Ok(Arc::new(kept));
-    }
-    let found = study::splits(&sample, distance, rounds, db.revoked()).unwrap_or_else(|_| leave(db));
-    store.put(&key, &found);
-    Ok(Arc::new(found))
+    trace(db).executed(Query::SplitRows);
+    kept(db, &key, || Ok(study::splits(&sample, distance, rounds, db.revoked()).unwrap_or_else(|_| leave(db))))
 }
 
 /// blake3 over all features and labels.

@@ -36,14 +36,6 @@ pub(crate) struct Job {
     pub(crate) count: usize,
 }
 
-impl Job {
-    /// How much memory it takes to solve, beside others of its list: files of a data set are of like kinds, and what is
-    /// re-meshed is all of one size.
-    fn size(&self) -> f64 {
-        if self.problem.remesh.is_some() { 1.0 } else { self.stamp.map_or(0.0, |stamp| stamp.bytes() as f64) }
-    }
-}
-
 /// What the pool tells of a job. `list` is the list it was wanted by, `slot` its place there.
 #[derive(Debug)]
 pub(crate) struct News {
@@ -77,36 +69,7 @@ struct Wanted {
     list: u64,
     waiting: VecDeque<(usize, Job)>,
     running: Vec<Option<Running>>,
-    /// Sizes of running jobs should not add up to more, so that the largest are not all solved at once.
-    budget: f64,
     closed: bool,
-}
-
-/// So many of the waiting jobs are looked at for one that fits beside those that run.
-const AHEAD: usize = 16;
-
-/// How much more than they have on average the running jobs may have together. Tried on the sizes and costs of SHREC
-/// 2007: with less, the large ones are left over and meet at the end.
-const SLACK: f64 = 1.2;
-
-impl Wanted {
-    /// Sees to the budget of a new list. Time goes with size, so that a job that runs has on average the mean of sizes
-    /// weighted by themselves.
-    fn plan(&mut self) {
-        let jobs = self.waiting.iter().map(|(_, job)| job).chain(self.running.iter().flatten().map(|run| &run.job));
-        let (sum, squares) =
-            jobs.map(Job::size).fold((0.0, 0.0), |(sum, squares), size| (sum + size, squares + size * size));
-        self.budget = if sum > 0.0 { SLACK * self.running.len() as f64 * squares / sum } else { 0.0 };
-    }
-
-    /// Takes the next job: of the first few the first that fits beside those that run, else the smallest.
-    fn next(&mut self) -> Option<(usize, Job)> {
-        let left = self.budget - self.running.iter().flatten().map(|run| run.job.size()).sum::<f64>();
-        let sizes: Vec<f64> = self.waiting.iter().take(AHEAD).map(|(_, job)| job.size()).collect();
-        let fits = sizes.iter().position(|size| *size <= left);
-        let at = fits.or_else(|| (0..sizes.len()).min_by(|a, b| sizes[*a].total_cmp(&sizes[*b])))?;
-        self.waiting.remove(at)
-    }
 }
 
 struct Shared {
@@ -167,8 +130,7 @@ impl Pool {
         self.threads.len()
     }
 
-    /// Replaces the list of wanted jobs. They are begun in its order, but for large ones, which wait for each other.
-    /// Returns the list's number.
+    /// Replaces the list of wanted jobs; the first is begun first. Returns the list's number.
     pub(crate) fn want(&self, jobs: Vec<(usize, Job)>) -> u64 {
         let mut wanted = self.shared.wanted();
         wanted.list += 1;
@@ -186,7 +148,6 @@ impl Pool {
             }
         }
         wanted.waiting = waiting;
-        wanted.plan();
         drop(wanted);
         self.shared.changed.notify_all();
         list
@@ -222,7 +183,7 @@ fn work(shared: &Shared, thread: usize) {
                 if wanted.closed {
                     return;
                 }
-                if let Some((slot, job)) = wanted.next() {
+                if let Some((slot, job)) = wanted.waiting.pop_front() {
                     let cancel = Arc::new(AtomicBool::new(false));
                     let list = wanted.list;
                     wanted.running[thread] =
@@ -324,60 +285,5 @@ impl Watch for Eye<'_> {
             *told = Instant::now();
         }
         self.tell(What::Progress { done, total });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::spectrum::Choice;
-
-    /// A list of files of these sizes, on so many threads.
-    fn wanted(sizes: &[u64], threads: usize) -> Wanted {
-        let folder = tempfile::tempdir().unwrap();
-        let job = |(slot, &size): (usize, &u64)| {
-            let path = folder.path().join(slot.to_string());
-            std::fs::File::create(&path).unwrap().set_len(size).unwrap();
-            let (stamp, problem) = (Stamp::of(&path), Choice::default().into());
-            (slot, Job { path, format: Format::Off, stamp, problem, count: 1 })
-        };
-        let mut wanted = Wanted { waiting: sizes.iter().enumerate().map(job).collect(), ..Wanted::default() };
-        wanted.running.resize_with(threads, || None);
-        wanted.plan();
-        wanted
-    }
-
-    /// Lets a thread begin the next job; gives its place in the list.
-    fn begin(wanted: &mut Wanted, thread: usize) -> Option<usize> {
-        wanted.running[thread] = None;
-        let (slot, job) = wanted.next()?;
-        let (list, cancel) = (wanted.list, Arc::default());
-        wanted.running[thread] = Some(Running { job, slot, list, cancel });
-        Some(slot)
-    }
-
-    #[test]
-    fn jobs_of_one_size_are_begun_in_their_order() {
-        let mut wanted = wanted(&[10; 9], 3);
-        let begun: Vec<usize> = (0..9).filter_map(|at| begin(&mut wanted, at % 3)).collect();
-        assert_eq!(begun, (0..9).collect::<Vec<_>>());
-        assert_eq!(begin(&mut wanted, 0), None);
-    }
-
-    #[test]
-    fn large_jobs_wait_for_each_other_as_long_as_there_are_others() {
-        // On average a running job has (2 · 90² + 6 · 10²) / 240 = 70, two and some slack 168: 90 and 90 are too many.
-        let mut wanted = wanted(&[90, 90, 10, 10, 10, 10, 10, 10], 2);
-        assert_eq!([0, 1, 1, 1].map(|thread| begin(&mut wanted, thread)), [Some(0), Some(2), Some(3), Some(4)]);
-        assert_eq!(begin(&mut wanted, 0), Some(1), "the first large one is done");
-        assert_eq!([1, 1, 1, 1].map(|thread| begin(&mut wanted, thread)), [Some(5), Some(6), Some(7), None]);
-    }
-
-    #[test]
-    fn what_does_not_fit_is_begun_where_nothing_else_is_left() {
-        let mut wanted = wanted(&[90, 10, 10, 10, 10, 10, 10, 90], 2);
-        assert_eq!(begin(&mut wanted, 0), Some(0));
-        let begun: Vec<usize> = (1..8).filter_map(|_| begin(&mut wanted, 1)).collect();
-        assert_eq!(begun, (1..8).collect::<Vec<_>>());
     }
 }

@@ -110,10 +110,11 @@ impl Singles {
         let (file, facts) = self.examine(path, watch)?;
         let mesh = prepare(file, problem, watch)?;
         let start = Instant::now();
-        let window = spectrum::near(&mesh, problem.choice, target, count, watch).map_err(|error| match error {
+        let mut window = spectrum::near(&mesh, problem.choice, target, count, watch).map_err(|error| match error {
             SpectrumError::Cancelled { .. } => SingleError::Cancelled,
             error => SingleError::Failed(error.to_string()),
         })?;
+        window.notes.splice(0..0, problem.note());
         let seconds = start.elapsed().as_secs_f64();
         Ok(Near { geometry: facts.geometry, survey: facts.survey.clone(), window, seconds })
     }

@@ -41,11 +41,6 @@ impl Stamp {
         std::fs::metadata(path).ok().map(|metadata| Self::from_metadata(&metadata))
     }
 
-    /// Bytes of the file.
-    pub(super) const fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
     fn from_metadata(metadata: &Metadata) -> Self {
         let modified_ns = metadata
             .modified()

@@ -51,6 +51,10 @@ pub enum Query {
     RetrievalRows,
     /// Nested cross-validation.
     HonestRows,
+    /// Nearest neighbours tuned inside the fold.
+    TunedRows,
+    /// The paper's figures on other splits.
+    SplitRows,
 }
 
 /// Work done at one stage.

@@ -100,9 +100,16 @@ pub struct InertiaCount {
 }
 
 impl MeshSpectrum {
-    /// The first `count` eigenvalues of a mesh; the file's name is left empty.
+    /// The first `count` eigenvalues of the mesh in `file`.
     #[must_use]
-    pub fn new(geometry: GeometryHash, survey: &Survey, choice: Choice, spectrum: &Spectrum, count: usize) -> Self {
+    pub fn new(
+        file: String,
+        geometry: GeometryHash,
+        survey: &Survey,
+        choice: Choice,
+        spectrum: &Spectrum,
+        count: usize,
+    ) -> Self {
         let (mut eigenvalues, mut errors) = (spectrum.eigenvalues(), spectrum.residuals());
         eigenvalues.truncate(count);
         errors.truncate(count);
@@ -120,19 +127,19 @@ impl MeshSpectrum {
             notes: spectrum.notes.clone(),
             timings: spectrum.timings.clone(),
         };
-        Self::near(geometry, survey, choice, window)
+        Self::near(file, geometry, survey, choice, window)
     }
 
-    /// Some eigenvalues of a mesh that follow each other; the file's name is left empty.
+    /// Some eigenvalues, which follow each other, of the mesh in `file`.
     #[must_use]
-    pub fn near(geometry: GeometryHash, survey: &Survey, choice: Choice, window: Window) -> Self {
+    pub fn near(file: String, geometry: GeometryHash, survey: &Survey, choice: Choice, window: Window) -> Self {
         let certificate = window.certificate.iter().map(|count| InertiaCount {
             part: count.part,
             shift: (count.shift < f64::MAX).then_some(count.shift),
             below: count.below,
         });
         Self {
-            file: String::new(),
+            file,
             geometry: geometry.to_string(),
             vertices: survey.vertices,
             triangles: survey.triangles,

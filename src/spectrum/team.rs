@@ -124,7 +124,7 @@ enum Work {
     /// Run the process of a slot.
     Run(usize, u64, Place),
     /// Make the next band of what the processes at its ends saw.
-    Make(usize, u64, Place, Sides),
+    Make(usize, u64, Place, Sides, Side),
     /// Count where the answer ends.
     End(usize, Ending),
 }
@@ -148,6 +148,13 @@ impl Chain {
             Place::Again | Place::Nowhere => None,
         });
         last.unwrap_or_else(|| (self.bands.last().map_or(0.0, |band| band.upper), self.counted()))
+    }
+
+    /// Where the first of its bands that are not needed yet begins; none when all eigenvalues are known.
+    fn frontier(&self, piece: &Piece) -> Option<f64> {
+        let last = self.needed.checked_sub(1).map(|last| &self.bands[last]);
+        let finished = last.is_some_and(|last| last.above == piece.pencil.order());
+        (!finished).then(|| last.map_or(0.0, |last| last.upper))
     }
 
     /// What is seen on the right of its first bands.
@@ -183,7 +190,22 @@ impl Team {
             .collect();
         let state = State { chains, next: 0, helpers: 0, timings: Timings::default() };
         let (changed, over) = (Condvar::new(), AtomicBool::new(false));
-        Self { pieces, small, count, state: Mutex::new(state), changed, over }
+        let team = Self { pieces, small, count, state: Mutex::new(state), changed, over };
+        team.drop_early();
+        team
+    }
+
+    /// Drops known bands that end early, unless they are enough: no chain goes on from there.
+    fn drop_early(&self) {
+        let mut state = self.state();
+        if matches!(self.judge(&mut state).0, Standing::Done) {
+            return;
+        }
+        for chain in &mut state.chains {
+            chain.bands.retain(|band| !band.early);
+            chain.needed = chain.bands.len();
+            chain.rights.truncate(chain.needed);
+        }
     }
 
     /// Rows of the largest piece.
@@ -298,11 +320,8 @@ impl Team {
     fn judge(&self, state: &mut State) -> (Standing, usize) {
         loop {
             // Below what is known of every piece that is not finished.
-            let ends = state.chains.iter().zip(&self.pieces).enumerate().filter_map(|(at, (chain, piece))| {
-                let last = chain.needed.checked_sub(1).map(|last| &chain.bands[last]);
-                let finished = last.is_some_and(|last| last.above == piece.pencil.order());
-                (!finished).then(|| (last.map_or(0.0, |last| last.upper), at))
-            });
+            let chains = state.chains.iter().zip(&self.pieces).enumerate();
+            let ends = chains.filter_map(|(at, (chain, piece))| chain.frontier(piece).map(|end| (end, at)));
             let lowest = ends.min_by(|a, b| a.0.total_cmp(&b.0));
             let limit = lowest.map_or(f64::MAX, |lowest| lowest.0);
             let bands = state.chains.iter().flat_map(|chain| &chain.bands[..chain.needed]).chain(&self.small);
@@ -317,14 +336,7 @@ impl Team {
             let Some((_, at)) = lowest.filter(|_| done < self.count) else { return (Standing::Done, done) };
             let ending = self.ending(state, at);
             let chain = &mut state.chains[at];
-            if chain.bands.get(chain.needed).is_some_and(|next| next.early) {
-                chain.needed += 1;
-            } else if chain.bands[..chain.needed].last().is_some_and(|last| last.early) {
-                // More is asked for than when it was made.
-                chain.needed -= 1;
-                chain.bands.truncate(chain.needed);
-                chain.rights.truncate(chain.needed);
-            } else if let Some(at) = ending {
+            if let Some(at) = ending {
                 chain.ending.get_or_insert(Stop { at, counting: false });
                 return (Standing::Going, done);
             } else if chain.bands.len() > chain.needed {
@@ -349,7 +361,11 @@ impl Team {
             }
             if let Some(slot) = chain.slots.front_mut() {
                 match std::mem::replace(&mut slot.stage, Stage::Making) {
-                    Stage::Done(sides) => return Some(Work::Make(at, slot.number, slot.at, sides)),
+                    Stage::Done(sides) => {
+                        let (number, place) = (slot.number, slot.at);
+                        let right = chain.right(chain.bands.len()).cloned().unwrap_or_default();
+                        return Some(Work::Make(at, number, place, sides, right));
+                    }
                     Stage::Failed(failed) => {
                         chain.failed = Some(failed);
                         chain.slots.clear();

@@ -13,11 +13,7 @@ impl Team {
         let (chain, piece) = (&state.chains[at], &self.pieces[at]);
         let found = &chain.right(chain.needed).filter(|_| chain.endless != chain.needed)?.found;
         let others = || state.chains.iter().zip(&self.pieces).enumerate().filter(|(other, _)| *other != at);
-        let limit = others().fold(f64::MAX, |limit, (_, (chain, piece))| {
-            let last = chain.needed.checked_sub(1).map(|last| &chain.bands[last]);
-            let finished = last.is_some_and(|last| last.above == piece.pencil.order());
-            if finished { limit } else { limit.min(last.map_or(0.0, |last| last.upper)) }
-        });
+        let limit = others().filter_map(|(_, (chain, piece))| chain.frontier(piece)).fold(f64::MAX, f64::min);
         let mine = chain.needed.checked_sub(1).map_or(0, |last| chain.bands[last].above);
         let below = |lambda: f64| {
             let bands = others().flat_map(|(_, (chain, _))| &chain.bands[..chain.needed]).chain(&self.small);
@@ -62,6 +58,7 @@ impl Team {
             chain.slots.clear();
             chain.bands.push(band);
             chain.rights.push(None);
+            chain.needed += 1;
         } else {
             chain.endless = chain.needed;
         }

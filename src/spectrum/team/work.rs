@@ -4,7 +4,7 @@ use super::{Place, Slot, Stage, State, Team, Work};
 use crate::spectrum::{
     part::{Advance, End, Tools},
     poll::Poll,
-    slice::Sides,
+    slice::{Side, Sides},
 };
 
 impl Team {
@@ -55,9 +55,9 @@ impl Team {
                 };
                 self.store(at, number, looked, &mut undo)
             }
-            Work::Make(at, number, place, sides) => {
+            Work::Make(at, number, place, sides, right) => {
                 undo.what = Some(Undone::Make(at, number, sides));
-                self.make(at, place, tools, poll, &mut undo)
+                self.make(at, place, &right, tools, poll, &mut undo)
             }
             Work::End(at, ending) => {
                 undo.what = Some(Undone::End(at));
@@ -108,23 +108,19 @@ impl Team {
         Ok(())
     }
 
-    /// Makes the band of the first slot of a chain.
+    /// Makes the band of the first slot of a chain; `right` is what is seen from its lower end.
     fn make(
         &self,
         at: usize,
         place: Place,
+        right: &Side,
         tools: &mut Tools,
         poll: &mut Poll,
         undo: &mut Undo<'_>,
     ) -> Result<(), Advance> {
         let made = match (place, &undo.what) {
             (Place::Shift(shift), Some(Undone::Make(_, _, sides))) => {
-                let right = {
-                    let state = self.state();
-                    let chain = &state.chains[at];
-                    chain.right(chain.bands.len()).cloned().unwrap_or_default()
-                };
-                self.pieces[at].band(&shift, &right, &sides.left, tools, poll).map(Some)
+                self.pieces[at].band(&shift, right, &sides.left, tools, poll).map(Some)
             }
             _ => Ok(None),
         };
