@@ -12,7 +12,12 @@ use std::{
 
 use eigenselect::{
     dataset,
+    laplacian::{Mass, Operator},
     query::{Answer, Config, Finding, Host, ModelState, Question, Reply, Settings, Stage},
+    report::paper::{
+        self,
+        variation::{Subject, solves},
+    },
     spectrum::Normalisation,
     store::Store,
     study::Method,
@@ -234,7 +239,7 @@ fn trials_are_made_beside_the_screen() {
 }
 
 /// The first piece of news that `right` picks.
-fn wait_for_news<T>(updates: &mpsc::Receiver<Update>, right: impl Fn(Update) -> Option<T>) -> T {
+fn wait_for_news<T>(updates: &mpsc::Receiver<Update>, mut right: impl FnMut(Update) -> Option<T>) -> T {
     let deadline = Instant::now() + Duration::from_mins(1);
     loop {
         let update = updates.recv_timeout(deadline.saturating_duration_since(Instant::now())).unwrap();
@@ -286,20 +291,49 @@ fn the_document_is_written_while_the_screen_stays_live() {
 }
 
 #[test]
-fn the_variants_of_a_shape_are_solved_once_they_are_asked_for() {
+fn figure_1_is_made_once_it_is_asked_for_and_is_the_documents() {
     let folder = common::scratch();
     let (data, cache) = (folder.path().join("data"), folder.path().join("cache"));
-    common::write_data(&data, 2, 3);
-    let settings = Settings { kmax: 20, remesh: Some(150), class: 1, ..Settings::default() };
+    common::write_data(&data, 2, 4);
+    // The first training model is none.
+    std::fs::write(data.join("class1/m0.off"), "OFF\nnothing").unwrap();
+    // Its cot spectra are not those on the screen, nor is it of the models as they are.
+    let settings = Settings { kmax: 20, remesh: Some(150), class: 1, mass: Mass::Lumped, ..Settings::default() };
     let (worker, updates) = spawn(setup(&data, &cache, &settings));
-    worker.send(Command::Vary(settings.clone()));
+    let answer = wait_for(&updates, settled);
+    let subject = Subject::new(&settings, &answer);
+    worker.send(Command::Vary(subject.clone()));
+    let mut heard = Vec::new();
     let varied = wait_for_news(&updates, |update| match update {
+        Update::Varying(told, done) => {
+            assert_eq!(*told, subject);
+            heard.push(done);
+            None
+        }
         Update::Varied(varied) => Some(varied),
         _ => None,
     });
-    assert_eq!(varied.settings, settings);
-    let variants = varied.variants.as_ref().unwrap();
-    assert!(variants.len() == 9 && variants[0].fem.is_some() && variants[0].cot.is_some());
+    assert!(!heard.is_empty() && heard.is_sorted() && heard.iter().all(|done| *done <= solves(subject.models.len())));
+    assert_eq!(varied.subject, subject);
+    let variation = varied.variation.as_ref().unwrap();
+    let figure = variation.figure();
+    assert_eq!(figure.panels.len(), 6, "{:?}", figure.panels.iter().map(|panel| &panel.title).collect::<Vec<_>>());
+    assert_eq!((variation.model.as_str(), variation.variants.len()), ("class1/m1", 9));
+    assert!(variation.variants[0].fem.is_some() && variation.variants[0].cot.is_some());
+    assert!(variation.members[0].why.as_ref().unwrap().contains("line 2"), "{:?}", variation.members[0]);
+    assert!(variation.members[1..].iter().all(|member| member.fem.is_some() && member.cot.is_some()));
+    assert_eq!(variation.members[1].cot, variation.variants[0].cot);
+
+    // From a store of its own and with the other operator set, the document has the same.
+    let config = Config {
+        data: dataset::open(&data, &dataset::Options::default()).unwrap(),
+        settings: Settings { operator: Operator::Cot, ..settings },
+        store: Store::open(&folder.path().join("other"), eigenselect::store::Options::default()),
+        threads: 1,
+    };
+    let base = config.settings.clone();
+    let found = paper::collect(&mut Host::new(config), &base, &Unwatched).unwrap();
+    assert_eq!(found.variation.as_ref(), Ok(variation));
 }
 
 #[test]

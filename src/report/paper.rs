@@ -11,7 +11,7 @@ use serde::Serialize;
 
 pub use self::{
     published::{Column, Published, Row, published},
-    variation::Variation,
+    variation::{Subject, Variation},
     write::WriteError,
 };
 use super::document::{Identity, Parameters};
@@ -22,7 +22,7 @@ use crate::{
     query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
     spectrum::Normalisation,
     study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Splits, Table, Tuned},
-    watch::Watch,
+    watch::{Silent, Watch},
 };
 
 mod differences;
@@ -164,14 +164,19 @@ pub fn write(host: &mut Host, root: &str, folder: &Path, watch: &dyn Watch) -> R
 /// Makes the study on every spectrum in turn; `base` says what is not part of the paper's plan (kmax, distance, T …).
 ///
 /// `watch` hears of models finished, of all spectra together. The host is left at `base`. The variants of Figure 1 are
-/// of the first training model of `base`'s class, solved on as many threads as the host has.
+/// of the first training model of `base`'s class that has a spectrum, solved on as many threads as the host has.
 ///
 /// # Errors
 /// [`PaperError`].
 pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Found, PaperError> {
     let variants = Variant::all();
-    let mut found = Found::default();
-    let mut shown = None;
+    let mut found = Found {
+        rows: Vec::new(),
+        variation: Err("it is made last".to_owned()),
+        retrieved: Arc::default(),
+        honest: Vec::new(),
+        tuned: None,
+    };
     let turns = variants.len() + 1;
     for (turn, &variant) in variants.iter().enumerate() {
         host.set(variant.settings(base));
@@ -192,10 +197,6 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
         if variant.operator == Operator::Fem && variant.normalised {
             found.examine(host, &variant.name(), watch)?;
         }
-        if !variant.remeshed && !variant.normalised {
-            found.variation.learn(variant.operator, &answer);
-            shown = shown.or_else(|| Some(found.variation.model_of(&answer)?.path.clone()));
-        }
     }
     // What a reader would ask next: features that know how large the shape is for its frequencies.
     host.set(Settings { operator: Operator::Fem, normalisation: Normalisation::Log, remesh: None, ..base.clone() });
@@ -205,24 +206,21 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
         found.tuned = Some(tuned);
     }
     host.set(base.clone());
-    if let Some(path) = shown {
-        let (choice, vertices) = (base.choice(), base.remesh.unwrap_or(crate::remesh::USUAL));
-        found.variation.variants = variation::of_file(&host.singles(), &path, choice, vertices, host.threads(), watch)
-            .map_err(|reason| PaperError::Study { spectrum: path.display().to_string(), reason })?;
-        if watch.cancelled() {
-            return Err(Cancelled.into());
-        }
+    let subject = Subject::new(base, &host.answer());
+    found.variation = variation::of_class(&host.singles(), &subject, host.threads(), &Silent(watch));
+    if watch.cancelled() {
+        return Err(Cancelled.into());
     }
     Ok(found)
 }
 
 /// All that the document is made of.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Found {
     /// A study per spectrum.
     pub rows: Vec<Rows>,
-    /// Figure 1.
-    pub variation: Variation,
+    /// Figure 1, or why there is none.
+    pub variation: Result<Variation, String>,
     /// Table 5 and Figure 7, on [`Variant::BEST`].
     pub retrieved: Arc<Vec<Retrieved>>,
     /// Nested cross-validation, each with the name of its features.
@@ -330,9 +328,7 @@ impl Paper {
         };
         let mut sections = tables::sections(&head, &found.rows);
         sections.extend(differences::sections(&head, &found.rows));
-        if !found.variation.variants.is_empty() {
-            sections.push(found.variation.section());
-        }
+        sections.push(variation::section(found.variation.as_ref()));
         sections.extend(figures::sections(&head, &found.rows));
         sections.extend(retrieved::sections(&found.retrieved));
         sections.extend(honest::sections(&found.honest));

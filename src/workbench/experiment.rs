@@ -7,13 +7,10 @@ use std::{collections::BTreeSet, sync::Arc};
 
 use super::{Command, Effect, Entry, Purpose, State, Trial, View, leave, pins, update};
 use crate::{
-    dataset::Role,
-    laplacian::Operator,
     query::{ModelState, Settings, Source},
-    remesh,
     report::paper::{
         Variant,
-        variation::{EIGENVALUES, Spectra, Variation},
+        variation::{self, Subject, Variation},
     },
     study::FirstK,
 };
@@ -80,13 +77,31 @@ pub enum Told {
     Done(Result<usize, String>),
 }
 
-/// The spectra of the variants of a shape, and what they were computed for.
+/// Figure 1 that was made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Varied {
-    /// The parameters.
-    pub settings: Settings,
-    /// Itself, then its variants; or why there are none.
-    pub variants: Result<Arc<Vec<Spectra>>, String>,
+    /// What it is of.
+    pub subject: Subject,
+    /// The figure's rows, or why there are none.
+    pub variation: Result<Variation, String>,
+}
+
+/// Figure 1 that is being made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Varying {
+    /// What it is of.
+    pub subject: Subject,
+    /// Spectra that are there.
+    pub done: usize,
+    /// All of them.
+    pub total: usize,
+}
+
+impl Varying {
+    fn of(subject: Subject) -> Self {
+        let total = variation::solves(subject.models.len());
+        Self { subject, done: 0, total }
+    }
 }
 
 /// What of the experiment is on the screen.
@@ -104,9 +119,9 @@ pub struct Experiment {
     pub trying: Option<(Settings, usize, usize)>,
     /// The document that is being written.
     pub document: Option<Document>,
-    /// The variants that are being computed.
-    pub varying: Option<Settings>,
-    /// The variants last computed.
+    /// Figure 1 that is being made.
+    pub varying: Option<Varying>,
+    /// Figure 1 that was made last.
     pub varied: Option<Arc<Varied>>,
 }
 
@@ -186,42 +201,18 @@ impl State {
         self.answer.models.iter().map(|model| of(model.size)).sum()
     }
 
-    /// The variation of the class's first training model, of what is there; none before it was computed for the
-    /// parameters on the screen.
+    /// Figure 1 of the class on the screen, or why there is none; none before it was made.
     #[must_use]
-    pub fn variation(&self) -> Option<Result<Variation, &str>> {
-        let varied = self.experiment.varied.as_ref().filter(|varied| varies(&varied.settings, &self.settings))?;
-        let variants = match &varied.variants {
-            Ok(variants) => variants.as_ref().clone(),
-            Err(reason) => return Some(Err(reason)),
-        };
-        let class = self.settings.class;
-        let members =
-            self.answer.models.iter().filter(|model| model.class as usize == class && model.role == Role::Train);
-        let operator = self.answer.settings.operator;
-        let spectra = |model: &crate::query::ModelRow| {
-            let vertices = model.size.map_or(0, |size| size.0);
-            Some(Spectra::of_model(&model.name, vertices, operator, model.eigenvalues.as_deref()?))
-        };
-        let model = members.clone().next().map(|model| model.name.clone()).unwrap_or_default();
-        let class = self.class().unwrap_or_default().to_owned();
-        Some(Ok(Variation { model, class, variants, members: members.filter_map(spectra).collect() }))
+    pub fn variation(&self) -> Option<Result<&Variation, &str>> {
+        let varied = self.experiment.varied.as_ref().filter(|varied| varied.subject == self.subject())?;
+        Some(varied.variation.as_ref().map_err(String::as_str))
     }
-}
 
-/// Whether the variants for one are those for the other.
-fn varies(one: &Settings, other: &Settings) -> bool {
-    let of = |settings: &Settings| {
-        let choice = crate::laplacian::Choice { operator: Operator::Fem, ..settings.choice() };
-        (settings.class, choice, settings.remesh.unwrap_or(remesh::USUAL))
-    };
-    of(one) == of(other)
-}
-
-/// Solves that the variants take: each under both operators.
-#[must_use]
-pub fn variants() -> (usize, usize) {
-    (18, EIGENVALUES)
+    /// What Figure 1 is of.
+    #[must_use]
+    pub fn subject(&self) -> Subject {
+        Subject::new(&self.settings, &self.answer)
+    }
 }
 
 /// Spectra that are switched on and not there.
@@ -269,10 +260,7 @@ pub(super) fn switch(state: &mut State) -> Vec<Effect> {
             again(state)
         }
         Face::Variation if state.experiment.varying.take().is_some() => vec![Effect::Send(Command::StopVarying)],
-        Face::Variation => {
-            state.experiment.varying = Some(state.settings.clone());
-            vec![Effect::Send(Command::Vary(state.settings.clone()))]
-        }
+        Face::Variation => vary(state),
         Face::Own | Face::Recall => {
             update::say(state, "f turns to the paper's spectra, which are switched on and off");
             Vec::new()
@@ -335,10 +323,28 @@ pub(super) fn told(state: &mut State, told: Told) {
     }
 }
 
-/// Takes in variants.
+/// Has Figure 1 made of what is on the screen.
+fn vary(state: &mut State) -> Vec<Effect> {
+    let subject = state.subject();
+    state.experiment.varying = Some(Varying::of(subject.clone()));
+    vec![Effect::Send(Command::Vary(subject))]
+}
+
+/// Has it made again where it is there: the files it is of may be others now. What did not change is known.
+pub(super) fn vary_again(state: &mut State) -> Vec<Effect> {
+    if state.variation().is_some() { vary(state) } else { Vec::new() }
+}
+
+/// Takes in how far it is.
+pub(super) fn varying(state: &mut State, subject: &Subject, done: usize) {
+    if let Some(varying) = state.experiment.varying.as_mut().filter(|varying| varying.subject == *subject) {
+        varying.done = done;
+    }
+}
+
+/// Takes it in.
 pub(super) fn varied(state: &mut State, varied: Arc<Varied>) {
-    if state.experiment.varying.as_ref() == Some(&varied.settings) {
-        state.experiment.varying = None;
+    if state.experiment.varying.take_if(|varying| varying.subject == varied.subject).is_some() {
         state.experiment.varied = Some(varied);
     }
 }

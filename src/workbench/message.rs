@@ -9,7 +9,10 @@ use super::{
     journal::Line,
     shape::{Picture, Scene},
 };
-use crate::query::{Answer, Question, Reply, Settings};
+use crate::{
+    query::{Answer, Question, Reply, Settings},
+    report::paper::variation::Subject,
+};
 
 /// An order to the engine.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,9 +40,9 @@ pub enum Command {
     Paper(PathBuf),
     /// Write it no longer.
     StopPaper,
-    /// Make and solve the variants of the first training model of the parameters' class.
-    Vary(Settings),
-    /// Solve them no longer.
+    /// Make Figure 1 of this.
+    Vary(Subject),
+    /// Make it no longer.
     StopVarying,
     /// Look at the files again.
     Rescan,
@@ -91,7 +94,9 @@ pub enum Update {
     Trying(Settings, usize, usize),
     /// News of the paper's document.
     Paper(Told),
-    /// The variants of a shape.
+    /// Figure 1 of this has so many of its spectra.
+    Varying(Arc<Subject>, usize),
+    /// Figure 1 is made, or why not.
     Varied(Arc<Varied>),
     /// What was done, for the journal.
     Note(Line),

@@ -65,7 +65,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Undo => return travel(state, true),
         Action::Redo => return travel(state, false),
         Action::Commit => return commit(state),
-        Action::News(news) => hear(state, news),
+        Action::News(news) => return hear(state, news),
         Action::Switch => return experiment::switch(state),
         Action::SwitchOff => return experiment::switch_off(state),
         Action::WritePaper => return experiment::document(state),
@@ -102,7 +102,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
 }
 
 /// Takes in what the engine tells.
-fn hear(state: &mut State, news: Update) {
+fn hear(state: &mut State, news: Update) -> Vec<Effect> {
     match news {
         Update::Answer(answer) => receive(state, answer),
         Update::Reply(reply) => {
@@ -114,10 +114,12 @@ fn hear(state: &mut State, news: Update) {
             state.changed = Some(Change::of_files());
             state.replies.clear_surfaces();
             state.looked_for.clear();
+            return experiment::vary_again(state);
         }
         Update::Trial(trial) => pins::take(state, &trial),
         Update::Trying(settings, done, total) => state.experiment.trying = Some((settings, done, total)),
         Update::Paper(told) => experiment::told(state, told),
+        Update::Varying(subject, done) => experiment::varying(state, &subject, done),
         Update::Varied(varied) => experiment::varied(state, varied),
         Update::Note(line) => state.journal.take(line),
         Update::Written(path, outcome) => leave::told(state, &path, outcome),
@@ -126,6 +128,7 @@ fn hear(state: &mut State, news: Update) {
         Update::Picture(..) => {}
         Update::Fatal(reason) => state.fatal = Some(reason),
     }
+    Vec::new()
 }
 
 /// What changes only how the state is looked at.

@@ -22,6 +22,7 @@ use super::{
 use crate::{
     dataset::{self, DataSet},
     query::{Config, Host, Members, News, Piece, Question, Reply, Settings},
+    report::paper::variation::Subject,
     store::Store,
 };
 
@@ -66,7 +67,9 @@ enum Message {
     Trying(Settings, usize, usize),
     /// News of the paper's document.
     Paper(Told),
-    /// The variants of a shape.
+    /// How far Figure 1 of this is.
+    Varying(Arc<Subject>, usize),
+    /// Figure 1.
     Varied(Arc<Varied>),
     /// The data set changed.
     Changed,
@@ -176,7 +179,7 @@ struct Desk<'a> {
     askings: u64,
     /// Calls off the trials under way.
     recall: Recall,
-    /// Call off the paper's document and the variants under way.
+    /// Call off the paper's document and the Figure 1 under way.
     paper: Recall,
     varying: Recall,
     told: telling::Told,
@@ -252,10 +255,11 @@ impl<'a> Desk<'a> {
                     Message::Trial(trial) => self.tried(trial),
                     Message::Trying(settings, done, total) => (self.notify)(Update::Trying(settings, done, total)),
                     Message::Paper(told) => self.paper_told(told),
+                    Message::Varying(subject, done) => (self.notify)(Update::Varying(subject, done)),
                     Message::Varied(varied) => (self.notify)(Update::Varied(varied)),
                     Message::Command(Command::Paper(folder)) => self.write_paper(folder),
                     Message::Command(Command::StopPaper) => self.paper.call(),
-                    Message::Command(Command::Vary(settings)) => self.vary(settings),
+                    Message::Command(Command::Vary(subject)) => self.vary(subject),
                     Message::Command(Command::StopVarying) => self.varying.call(),
                     Message::Command(Command::Quit) => {
                         self.recall.call();

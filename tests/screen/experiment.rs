@@ -5,7 +5,7 @@ use std::{sync::Arc, time::Duration};
 use eigenselect::{
     laplacian::Operator,
     query::Parameter,
-    report::paper::variation::Spectra,
+    report::paper::variation::{Spectra, Subject, Variation},
     workbench::{
         Action, Command, Effect, State, Update, View,
         experiment::{Face, Standing, Told, Varied},
@@ -46,16 +46,24 @@ pub fn faced(face: Face, size: (u16, u16)) -> State {
         }
         Face::Variation => {
             let effects = update(&mut state, Action::Switch);
-            let Effect::Send(Command::Vary(settings)) = &effects[0] else { panic!("{effects:?}") };
+            let Effect::Send(Command::Vary(subject)) = &effects[0] else { panic!("{effects:?}") };
             let of = |(name, turn): (&str, f64)| {
                 let values: Vec<f64> =
                     (0..100).map(|k| f64::from(k) * (1.0 + turn * (f64::from(k) * 0.3).sin())).collect();
-                let mut spectra = Spectra::of_model(name, 5000, Operator::Fem, &values);
-                spectra.cot = Some(values.iter().map(|value| value * 0.01).collect());
+                let mut spectra = Spectra::of(name, 5000);
+                spectra.put(Operator::Fem, &values);
+                spectra.put(Operator::Cot, &values.iter().map(|value| value * 0.01).collect::<Vec<_>>());
                 spectra
             };
             let variants = [("original", 0.0), ("rotated", 0.0), ("bent by 60°", 0.03), ("refined", 0.004)].map(of);
-            let varied = Varied { settings: settings.clone(), variants: Ok(Arc::new(variants.to_vec())) };
+            let members = (0_u8..).zip(&subject.models).map(|(at, (name, _))| of((name, f64::from(at) / 90.0)));
+            let variation = Variation {
+                model: subject.models[0].0.clone(),
+                class: subject.class.clone(),
+                variants: variants.to_vec(),
+                members: members.collect(),
+            };
+            let varied = Varied { subject: subject.clone(), variation: Ok(variation) };
             update(&mut state, Action::News(Update::Varied(Arc::new(varied))));
         }
     }
@@ -75,7 +83,36 @@ fn the_papers_figures_are_faces_of_the_curves() {
     assert!(drawn(&before, SMALL).contains("no spectrum is switched on"));
     update(&mut before, Action::TurnFace);
     update(&mut before, Action::TurnFace);
-    assert!(drawn(&before, MEDIUM).contains("18 solves"), "what it costs is said before");
+    let (models, screen) = (before.subject().models.len(), drawn(&before, MEDIUM));
+    assert!(screen.contains(&format!("{} spectra", 18 + 2 * models)), "what it costs is said before: {screen}");
+}
+
+#[test]
+fn figure_1_tells_how_far_it_is_and_is_made_again_when_the_files_were_looked_at() {
+    let mut state = faced(Face::Own, MEDIUM);
+    while state.experiment.face != Face::Variation {
+        update(&mut state, Action::TurnFace);
+    }
+    assert!(update(&mut state, Action::News(Update::Rescanned)).is_empty(), "there is nothing to be made again");
+    let effects = update(&mut state, Action::Switch);
+    let [Effect::Send(Command::Vary(subject))] = &effects[..] else { panic!("{effects:?}") };
+    let total = 18 + 2 * subject.models.len();
+    update(&mut state, Action::News(Update::Varying(Arc::new(subject.clone()), 7)));
+    assert!(drawn(&state, MEDIUM).contains(&format!("7 of {total} spectra")), "{}", drawn(&state, MEDIUM));
+    let other = Subject { vertices: 1, ..subject.clone() };
+    update(&mut state, Action::News(Update::Varying(Arc::new(other.clone()), 8)));
+    let late = Varied { subject: other, variation: Err("of another".to_owned()) };
+    update(&mut state, Action::News(Update::Varied(Arc::new(late))));
+    assert!(drawn(&state, MEDIUM).contains(&format!("7 of {total} spectra")), "news of another figure say nothing");
+    assert_eq!(update(&mut state, Action::Switch), [Effect::Send(Command::StopVarying)]);
+
+    let mut state = faced(Face::Variation, MEDIUM);
+    let shown = drawn(&state, MEDIUM);
+    let effects = update(&mut state, Action::News(Update::Rescanned));
+    assert!(matches!(&effects[0], Effect::Send(Command::Vary(again)) if *again == state.subject()), "{effects:?}");
+    assert_eq!(drawn(&state, MEDIUM), shown, "it stays until the new one is there");
+    update(&mut state, Action::Set(Parameter::Class, "2".to_owned()));
+    assert!(drawn(&state, MEDIUM).contains("spectra are there"), "it is not another class's");
 }
 
 #[test]

@@ -1,30 +1,24 @@
 //! Figure 1: how much the spectrum of one shape varies, over variants made of it and over its class.
 
-use std::{
-    path::Path,
-    sync::{Mutex, OnceLock},
-};
-
 use serde::Serialize;
 
+pub use self::make::{Subject, of_class, solves};
 use super::Section;
 use crate::{
-    dataset::Role,
     figure::{Axis, Dash, Figure, Layer, Mark, Panel, Style},
     laplacian::Operator,
-    mesh::{self, Format, Mesh, deform},
-    query::{Answer, ModelRow, Problem, Singles},
     report::{figures, markdown},
-    spectrum::{Choice, Normalisation},
+    spectrum::Normalisation,
     study::{Cell, Table},
-    watch::{Silent, Watch},
 };
+
+mod make;
 
 /// Eigenvalues of each variant, as in the paper.
 pub const EIGENVALUES: usize = 100;
 
-/// The spectra of one shape's variants and of its class.
-#[derive(Debug, Clone, Default, Serialize)]
+/// The spectra of one shape's variants and of its class; made by [`of_class`].
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Variation {
     /// The model that the variants are made of.
     pub model: String,
@@ -51,91 +45,15 @@ pub struct Spectra {
     pub why: Option<String>,
 }
 
-/// A variant: its name, how it is made of the mesh, and to how many vertices it is re-meshed then.
-type Made = (&'static str, fn(&Mesh) -> Mesh, Option<usize>);
-
-/// The variants of a mesh, itself first. A quarter of its vertices may be too few to re-mesh it to.
-fn variants(mesh: &Mesh, vertices: usize) -> [Made; 9] {
-    [
-        ("original", Mesh::clone, None),
-        ("rotated", |mesh| deform::rotate(mesh, [1.0, 2.0, 3.0], 1.0), None),
-        ("scaled by 2", |mesh| deform::scale(mesh, 2.0), None),
-        ("bent by 60°", |mesh| deform::bend(mesh, std::f64::consts::FRAC_PI_3), None),
-        ("smoothed", |mesh| deform::smooth(mesh, 10), None),
-        ("noise, 10 % of an edge", |mesh| deform::noise(mesh, 0.1, 1), None),
-        ("refined, each face in four", deform::refine, None),
-        ("simplified to a quarter", Mesh::clone, Some(mesh.vertices().len() / 4)),
-        ("re-meshed", Mesh::clone, Some(vertices)),
-    ]
-}
-
-/// Makes the variants of the mesh in the file at `path`, one of them re-meshed to `vertices`, and solves them on
-/// `threads` threads where `singles` does not know their spectra. A variant that cannot be had is there with the
-/// reason.
-///
-/// # Errors
-/// When the file cannot be read as a mesh.
-pub fn of_file(
-    singles: &Singles,
-    path: &Path,
-    base: Choice,
-    vertices: usize,
-    threads: usize,
-    watch: &dyn Watch,
-) -> Result<Vec<Spectra>, String> {
-    let watch = &Silent(watch);
-    let format = Format::of(path).ok_or_else(|| "not a mesh by its name".to_owned())?;
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
-    let mesh = mesh::read(&bytes, format).map_err(|error| error.to_string())?.canonical();
-    let variants = variants(&mesh, vertices);
-    let spectra = variants.map(|(name, ..)| Spectra { name: name.to_owned(), ..Spectra::default() });
-    let made: [OnceLock<Mesh>; 9] = Default::default();
-    let jobs = (0..made.len()).flat_map(|at| [Operator::Fem, Operator::Cot].map(|operator| (at, operator)));
-    let (jobs, spectra) = (Mutex::new(jobs), Mutex::new(spectra.to_vec()));
-    let next = || jobs.lock().ok().and_then(|mut jobs| jobs.next());
-    let work = || {
-        while let Some((at, operator)) = next() {
-            let (_, make, remesh) = variants[at];
-            let made = made[at].get_or_init(|| make(&mesh));
-            let choice =
-                Choice::new(operator, base.mass).with_boundary(base.boundary).with_triangulation(base.triangulation);
-            let found = singles.of_mesh(made, Problem { remesh, choice }, EIGENVALUES, watch);
-            let Ok(mut spectra) = spectra.lock() else { return };
-            let row = &mut spectra[at];
-            match (found, remesh) {
-                (Ok(found), _) => {
-                    row.vertices = remesh.unwrap_or(made.vertices().len());
-                    row.put(operator, &found.eigenvalues());
-                }
-                (Err(error), None) => {
-                    row.vertices = made.vertices().len();
-                    row.why = Some(error.to_string());
-                }
-                (Err(error), Some(_)) => row.why = Some(error.to_string()),
-            }
-        }
-    };
-    // The calling thread is one of them.
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            let _ = std::thread::Builder::new().name("variant".into()).spawn_scoped(scope, work);
-        }
-        work();
-    });
-    spectra.into_inner().map_err(|_| "internal error, please report it".to_owned())
-}
-
 impl Spectra {
-    /// Those of a model of the data set under one operator; the eigenvalues may be more than are shown.
+    /// A shape of which no eigenvalue is known yet.
     #[must_use]
-    pub fn of_model(name: &str, vertices: usize, operator: Operator, eigenvalues: &[f64]) -> Self {
-        let mut spectra = Self { name: name.to_owned(), vertices, fem: None, cot: None, why: None };
-        spectra.put(operator, eigenvalues);
-        spectra
+    pub fn of(name: &str, vertices: usize) -> Self {
+        Self { name: name.to_owned(), vertices, ..Self::default() }
     }
 
     /// Takes in the eigenvalues of one operator; they may be more than are shown.
-    pub(super) fn put(&mut self, operator: Operator, eigenvalues: &[f64]) {
+    pub fn put(&mut self, operator: Operator, eigenvalues: &[f64]) {
         let count = EIGENVALUES.min(eigenvalues.len());
         match operator {
             Operator::Fem => self.fem = Some(normalisation(operator).apply(eigenvalues, 1.0, count)),
@@ -145,11 +63,37 @@ impl Spectra {
 
     /// What is shown of one operator.
     #[must_use]
-    pub fn of(&self, operator: Operator) -> Option<&[f64]> {
+    pub fn under(&self, operator: Operator) -> Option<&[f64]> {
         match operator {
             Operator::Fem => self.fem.as_deref(),
             Operator::Cot => self.cot.as_deref(),
         }
+    }
+}
+
+/// The part of the document, or why there is no figure in it.
+pub(super) fn section(variation: Result<&Variation, &String>) -> Section {
+    let heading = format!("Figure 1: Variation of the first {EIGENVALUES} eigenvalues");
+    let variation = match variation {
+        Ok(variation) => variation,
+        Err(reason) => {
+            let words = vec![format!("There is none: {}.", markdown::escape(reason))];
+            return Section { heading, words, table: None, figure: None };
+        }
+    };
+    let (model, class) = (markdown::escape(&variation.model), markdown::escape(&variation.class));
+    let mut words = vec![format!(
+        "(a, b) The first {EIGENVALUES} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
+         them, cot as they are. (c, d) The same as a change against the original. (e, f) {model} among the training \
+         models of its class, {class}. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
+         zeros left out."
+    )];
+    words.extend(variation.seen());
+    Section {
+        heading,
+        words,
+        table: Some(("figure-1-variation".to_owned(), variation.table())),
+        figure: Some(("figure-1".to_owned(), variation.figure())),
     }
 }
 
@@ -180,54 +124,37 @@ const LOOKS: [Style; 9] = [
 ];
 
 impl Variation {
-    /// Takes in the spectra of the class whose turn it is.
-    pub(super) fn learn(&mut self, operator: Operator, answer: &Answer) {
-        let class = answer.settings.class as u32;
-        self.class = answer.classes.get(answer.settings.class).cloned().unwrap_or_default();
-        let members = answer.members.iter().map(|&at| &answer.models[at]);
-        for model in members.filter(|model| model.class == class && model.role == Role::Train) {
-            let Some(eigenvalues) = &model.eigenvalues else { continue };
-            if self.members.iter().all(|member| member.name != model.name) {
-                let vertices = model.size.map_or(0, |(vertices, _)| vertices);
-                self.members.push(Spectra { name: model.name.clone(), vertices, fem: None, cot: None, why: None });
-            }
-            if let Some(member) = self.members.iter_mut().find(|member| member.name == model.name) {
-                member.put(operator, eigenvalues);
-            }
-        }
-        self.model = self.members.first().map(|member| member.name.clone()).unwrap_or_default();
+    /// The eigenvalues of one of the shapes under an operator, each with its index.
+    #[must_use]
+    pub fn curve(spectra: &Spectra, operator: Operator) -> Option<Vec<[f64; 2]>> {
+        let values = spectra.under(operator)?;
+        Some((1_u32..).zip(values).map(|(k, &value)| [f64::from(k), value]).collect())
     }
 
-    /// The row of the model that the variants are made of.
-    pub(super) fn model_of<'a>(&self, answer: &'a Answer) -> Option<&'a ModelRow> {
-        answer.models.iter().find(|model| model.name == self.model)
+    /// By how many percent they differ from the original's; its zeros are left out.
+    #[must_use]
+    pub fn change(&self, spectra: &Spectra, operator: Operator) -> Option<Vec<[f64; 2]>> {
+        let (values, original) = (spectra.under(operator)?, self.variants.first()?.under(operator)?);
+        let least = least(original);
+        let known = (1_u32..).zip(values.iter().zip(original)).filter(|(_, (_, original))| **original > least);
+        Some(known.map(|(k, (value, original))| [f64::from(k), 100.0 * (value / original - 1.0)]).collect())
     }
 
     /// The figure: variants, how far they are from the original, and the class, under both operators, as far as they
     /// are there.
     #[must_use]
     pub fn figure(&self) -> Figure {
-        let curve = |values: &[f64]| (1_u32..).zip(values).map(|(k, &value)| [f64::from(k), value]).collect();
-        let variants = |operator: Operator, of: &dyn Fn(&[f64]) -> Vec<[f64; 2]>| -> Vec<Layer> {
+        let variants = |of: &dyn Fn(&Spectra) -> Option<Vec<[f64; 2]>>| -> Vec<Layer> {
             let known = |(at, spectra): (usize, &Spectra)| {
-                let points = of(spectra.of(operator)?);
-                Some(Layer::Line { name: spectra.name.clone(), style: LOOKS[at % LOOKS.len()], points })
+                Some(Layer::Line { name: spectra.name.clone(), style: LOOKS[at % LOOKS.len()], points: of(spectra)? })
             };
             self.variants.iter().enumerate().filter_map(known).collect()
-        };
-        let change = |operator: Operator| {
-            let original = self.variants.first().and_then(|first| first.of(operator)).unwrap_or_default();
-            let least = least(original);
-            variants(operator, &|values| {
-                let known = (1_u32..).zip(values.iter().zip(original)).filter(|(_, (_, original))| **original > least);
-                known.map(|(k, (value, original))| [f64::from(k), 100.0 * (value / original - 1.0)]).collect()
-            })
         };
         // The others first, so that the model shown lies over them.
         let members = |operator: Operator| -> Vec<Layer> {
             let known = |spectra: &Spectra| {
                 let (hue, name) = if spectra.name == self.model { (0, "original") } else { (6, "its class") };
-                let points = curve(spectra.of(operator)?);
+                let points = Self::curve(spectra, operator)?;
                 Some((hue, Layer::Line { name: name.to_owned(), style: Style::line(hue, Dash::Solid), points }))
             };
             let mut known: Vec<_> = self.members.iter().filter_map(known).collect();
@@ -240,15 +167,18 @@ impl Variation {
             y: Axis::linear(figures::unit(normalisation(operator))),
             layers,
         };
+        let itself = |title: String, operator: Operator| {
+            panel(title, operator, variants(&|spectra| Self::curve(spectra, operator)))
+        };
         let changed = |title: &str, operator: Operator| Panel {
             y: Axis::linear("change of λ, %"),
-            ..panel(title.to_owned(), operator, change(operator))
+            ..panel(title.to_owned(), operator, variants(&|spectra| self.change(spectra, operator)))
         };
         let (model, class) = (&self.model, &self.class);
         let (fem, cot) = (Operator::Fem, Operator::Cot);
         let mut panels = vec![
-            panel(format!("(a) variants of {model}, FEM"), fem, variants(fem, &curve)),
-            panel(format!("(b) variants of {model}, cot"), cot, variants(cot, &curve)),
+            itself(format!("(a) variants of {model}, FEM"), fem),
+            itself(format!("(b) variants of {model}, cot"), cot),
             changed("(c) against the original, FEM", fem),
             changed("(d) against the original, cot", cot),
             panel(format!("(e) {model} and its class, {class}, FEM"), fem, members(fem)),
@@ -256,23 +186,6 @@ impl Variation {
         ];
         panels.retain(|panel| !panel.layers.is_empty());
         Figure { title: String::new(), panels, across: 2 }
-    }
-
-    pub(super) fn section(&self) -> Section {
-        let (model, class) = (markdown::escape(&self.model), markdown::escape(&self.class));
-        let mut words = vec![format!(
-            "(a, b) The first {EIGENVALUES} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
-             them, cot as they are. (c, d) The same as a change against the original. (e, f) {model} among the training \
-             models of its class, {class}. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
-             zeros left out."
-        )];
-        words.extend(self.seen());
-        Section {
-            heading: format!("Figure 1: Variation of the first {EIGENVALUES} eigenvalues"),
-            words,
-            table: Some(("figure-1-variation".to_owned(), self.table())),
-            figure: Some(("figure-1".to_owned(), self.figure())),
-        }
     }
 
     /// What the figure shows, in words.
@@ -301,7 +214,7 @@ impl Variation {
     #[must_use]
     pub fn differences(&self) -> Vec<[Option<f64>; 2]> {
         let difference = |spectra: &Spectra, operator| {
-            let (ours, theirs) = (spectra.of(operator)?, self.variants.first()?.of(operator)?);
+            let (ours, theirs) = (spectra.under(operator)?, self.variants.first()?.under(operator)?);
             let least = least(theirs);
             let terms: Vec<f64> =
                 ours.iter().zip(theirs).filter(|(_, b)| **b > least).map(|(a, b)| (a - b).abs() / b).collect();

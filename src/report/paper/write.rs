@@ -54,7 +54,7 @@ struct Whole<'a> {
     #[serde(serialize_with = "json::tables")]
     tables: Vec<Table>,
     spectra: &'a [Rows],
-    variation: &'a Variation,
+    variation: Option<&'a Variation>,
     retrieved: &'a [Retrieved],
     honest: Vec<Examined<'a>>,
     tuned: Option<&'a Tuned>,
@@ -89,8 +89,8 @@ impl Paper {
         let Found { rows, variation, retrieved, honest, tuned } = &self.found;
         files.push(("pairs.csv".to_owned(), csv::table(&tuned::pairs(honest, tuned.as_deref()))?));
         let honest = honest.iter().map(|(features, honest)| Examined { features, honest }).collect();
-        let whole =
-            Whole { head: &self.head, tables, spectra: rows, variation, retrieved, honest, tuned: tuned.as_deref() };
+        let (variation, tuned) = (variation.as_ref().ok(), tuned.as_deref());
+        let whole = Whole { head: &self.head, tables, spectra: rows, variation, retrieved, honest, tuned };
         let mut bytes = Vec::new();
         json::lines(&whole, &mut bytes)?;
         files.push(("paper.json".to_owned(), bytes));

@@ -18,32 +18,38 @@ use super::super::{
 use super::lettered::{self, Lettered, letter};
 use crate::{
     laplacian::Operator,
-    report::paper::variation::{EIGENVALUES, Spectra, Variation},
-    workbench::{State, experiment::variants},
+    report::paper::variation::{EIGENVALUES, Spectra, Variation, solves},
+    workbench::State,
 };
 
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let width = (pane.width() as usize).saturating_sub(2);
     let said = match state.variation() {
-        Some(Ok(variation)) => return charts(&variation, pane),
+        Some(Ok(variation)) => return charts(variation, pane),
         Some(Err(reason)) => (reason.to_owned(), Role::Warn),
-        None if state.experiment.varying.is_some() => {
-            ("the variants are being made and solved; a calls it off".to_owned(), Role::Warn)
-        }
-        None => {
-            let (solves, count) = variants();
-            let said = format!(
-                "a makes variants of the first training model of {}: rotated, scaled, bent, smoothed, noisy, refined, \
-                 simplified, re-meshed. That is {solves} solves of {count} eigenvalues, some seconds of all processors.",
-                text::clean(state.class().unwrap_or("the class"))
-            );
-            (said, Role::Faint)
-        }
+        None => match &state.experiment.varying {
+            Some(varying) => {
+                let said = format!("{} of {} spectra are there; a calls it off", varying.done, varying.total);
+                (said, Role::Warn)
+            }
+            None => (offer(state), Role::Faint),
+        },
     };
     heading(pane, 0, &format!("Figure 1: variation of the first {EIGENVALUES} eigenvalues"), Note::Settled);
     for (y, line) in (1..).zip(text::wrap(&said.0, width)) {
         pane.put(1, y, &line, said.1);
     }
+}
+
+/// What the key makes, and what that takes.
+fn offer(state: &State) -> String {
+    let spectra = solves(state.subject().models.len());
+    format!(
+        "a makes variants of the first training model of {}: rotated, scaled, bent, smoothed, noisy, refined, \
+         simplified, re-meshed, and has the class beside them, under FEM and cot. That is {spectra} spectra of \
+         {EIGENVALUES} eigenvalues; those that are not known yet take some seconds of all processors.",
+        text::clean(state.class().unwrap_or("the class"))
+    )
 }
 
 fn charts(variation: &Variation, pane: &mut Pane<'_>) {
@@ -56,24 +62,16 @@ fn charts(variation: &Variation, pane: &mut Pane<'_>) {
     let across = (rest.width / wide).max(1);
     let lines = (variation.variants.len() as u16).div_ceil(across).min(rest.height.saturating_sub(8));
     let list = pane::cut_bottom(&mut rest, lines);
-    let mut panels = vec![
-        ("(a) variants, FEM λ/max", Operator::Fem, &variation.variants, true),
-        ("(b) variants, cot λ", Operator::Cot, &variation.variants, true),
-        ("(c) the class, FEM λ/max", Operator::Fem, &variation.members, false),
-        ("(d) the class, cot λ", Operator::Cot, &variation.members, false),
-    ];
-    panels.retain(|(_, operator, spectra, _)| spectra.iter().any(|spectra| spectra.of(*operator).is_some()));
-    let beside = rest.width >= 70;
-    let stacked = if beside { panels.len().div_ceil(2) } else { panels.len() };
-    let rows = stacked.min((rest.height / 8).max(1) as usize);
-    let shown = panels.into_iter().take(rows * if beside { 2 } else { 1 }).collect::<Vec<_>>();
-    let high = rest.height / rows.max(1) as u16;
-    for line in shown.chunks(if beside { 2 } else { 1 }) {
+    let columns = if rest.width >= 70 { 2 } else { 1 };
+    let shown = panels(variation, columns, rest.height);
+    let rows = (shown.len() as u16).div_ceil(columns);
+    for (row, line) in (0..).zip(shown.chunks(columns as usize)) {
+        let high = rest.height / (rows - row);
         let mut strip = pane::cut_top(&mut rest, high);
-        for (place, (title, operator, spectra, named)) in line.iter().enumerate() {
+        for (place, panel) in line.iter().enumerate() {
             let width = strip.width / (line.len() - place) as u16;
             let area = pane::cut_left(&mut strip, width);
-            chart(title, *operator, spectra, *named, &mut pane.part(area));
+            panel.draw(&mut pane.part(area));
         }
     }
     let mut list = pane.part(list);
@@ -90,22 +88,53 @@ fn charts(variation: &Variation, pane: &mut Pane<'_>) {
     }
 }
 
-fn chart(title: &str, operator: Operator, spectra: &[Spectra], named: bool, pane: &mut Pane<'_>) {
-    pane.put(1, 0, &text::fit(title, (pane.width() as usize).saturating_sub(2)), Role::Plain);
-    let curves: Vec<Lettered> = spectra
-        .iter()
-        .enumerate()
-        .filter_map(|(place, spectra)| Some((place, spectra.of(operator)?)))
-        .map(|(place, values)| Lettered {
-            letter: named.then(|| letter(place)),
-            points: (1..).map(f64::from).zip(values.iter().copied()).collect(),
-            role: Role::Class(place),
-            stroke: if named && place > 0 { Stroke::Dotted } else { Stroke::Solid },
-        })
-        .collect();
-    let values: Vec<f64> = curves.iter().flat_map(|curve| curve.points.iter().map(|(_, value)| *value)).collect();
-    let mut rest = pane.area();
-    pane::cut_top(&mut rest, 1);
-    let plot = lettered::plot(curves, Axis::indices(EIGENVALUES, false), Axis::around(values.into_iter().chain([0.0])));
-    plot.draw(&mut pane.part(pane::inset(rest, 1)));
+/// One of the figure's panels: what is above it, its curves, and whether they have letters.
+struct Panel {
+    title: &'static str,
+    curves: Vec<(usize, Vec<[f64; 2]>)>,
+    lettered: bool,
+}
+
+/// The panels that there is room for, `across` of them beside each other, named as in print. The change is left out
+/// first: the list has its mean.
+fn panels(variation: &Variation, across: u16, height: u16) -> Vec<Panel> {
+    let panel = |title, all: &[Spectra], lettered, of: &dyn Fn(&Spectra) -> Option<Vec<[f64; 2]>>| Panel {
+        title,
+        curves: all.iter().enumerate().filter_map(|(place, spectra)| Some((place, of(spectra)?))).collect(),
+        lettered,
+    };
+    let variants =
+        |title, operator| panel(title, &variation.variants, true, &|spectra| Variation::curve(spectra, operator));
+    let change =
+        |title, operator| panel(title, &variation.variants, true, &|spectra| variation.change(spectra, operator));
+    let class =
+        |title, operator| panel(title, &variation.members, false, &|spectra| Variation::curve(spectra, operator));
+    let (fem, cot) = (Operator::Fem, Operator::Cot);
+    let mut panels = vec![variants("(a) variants, FEM λ/max", fem), variants("(b) variants, cot λ", cot)];
+    let rows = |least: u16| usize::from((height / least).max(1));
+    if rows(11) >= usize::from(6 / across) {
+        panels.extend([change("(c) change of λ, %, FEM", fem), change("(d) change of λ, %, cot", cot)]);
+    }
+    panels.extend([class("(e) the class, FEM λ/max", fem), class("(f) the class, cot λ", cot)]);
+    panels.retain(|panel| !panel.curves.is_empty());
+    panels.truncate(rows(8) * usize::from(across));
+    panels
+}
+
+impl Panel {
+    fn draw(&self, pane: &mut Pane<'_>) {
+        pane.put(1, 0, &text::fit(self.title, (pane.width() as usize).saturating_sub(2)), Role::Plain);
+        let curve = |(place, points): &(usize, Vec<[f64; 2]>)| Lettered {
+            letter: self.lettered.then(|| letter(*place)),
+            points: points.iter().map(|&[k, value]| (k, value)).collect(),
+            role: Role::Class(*place),
+            stroke: if self.lettered && *place > 0 { Stroke::Dotted } else { Stroke::Solid },
+        };
+        let values = self.curves.iter().flat_map(|(_, points)| points.iter().map(|point| point[1]));
+        let y = Axis::around(values.chain([0.0]));
+        let mut rest = pane.area();
+        pane::cut_top(&mut rest, 1);
+        let plot = lettered::plot(self.curves.iter().map(curve).collect(), Axis::indices(EIGENVALUES, false), y);
+        plot.draw(&mut pane.part(pane::inset(rest, 1)));
+    }
 }

@@ -35,12 +35,8 @@ fn retrieved(state: &State) -> Option<&[Retrieved]> {
     }
 }
 
-fn variation(state: &State) -> Result<Variation, String> {
-    match state.variation() {
-        Some(Ok(variation)) => Ok(variation),
-        Some(Err(reason)) => Err(reason.to_owned()),
-        None => Err("the variants are not there yet: a makes them".to_owned()),
-    }
+fn variation(state: &State) -> Result<&Variation, String> {
+    state.variation().unwrap_or(Err("Figure 1 is not there yet: a makes it")).map_err(str::to_owned)
 }
 
 const NO_SPECTRUM: &str = "no spectrum that is switched on is there yet";

@@ -1,4 +1,4 @@
-//! What takes long and is asked for once: the paper's document, the variants of a shape. Each has a thread of its own
+//! What takes long and is asked for once: the paper's document, Figure 1 alone. Each has a thread of its own
 //! and can be called off.
 
 use std::{
@@ -9,10 +9,10 @@ use std::{
 
 use super::{Desk, Message};
 use crate::{
-    dataset::Role,
-    query::Settings,
-    remesh,
-    report::paper::{self, variation},
+    report::paper::{
+        self,
+        variation::{self, Subject},
+    },
     watch::Watch as _,
     workbench::{
         experiment::{Told, Varied},
@@ -49,32 +49,29 @@ impl Desk<'_> {
         }
     }
 
-    /// Makes and solves the variants of the class's first training model.
-    pub(super) fn vary(&mut self, settings: Settings) {
+    /// Makes Figure 1.
+    pub(super) fn vary(&mut self, subject: Subject) {
         self.varying.call();
         self.varying = Recall::default();
-        let answer = self.host.answer();
-        let class = settings.class;
-        let first = answer.models.iter().find(|model| model.class as usize == class && model.role == Role::Train);
-        let path = first.map(|model| model.path.clone());
-        let singles = self.host.singles();
-        let (recall, outbox, threads) = (self.varying.clone(), self.outbox.clone(), self.setup.threads);
-        let begun = std::thread::Builder::new().name("variants".into()).spawn(move || {
-            let vertices = settings.remesh.unwrap_or(remesh::USUAL);
-            let variants = match path {
-                Some(path) => catch_unwind(AssertUnwindSafe(|| {
-                    variation::of_file(&singles, &path, settings.choice(), vertices, threads, &recall)
-                }))
-                .unwrap_or_else(|_| Err("internal error in the variants, please report it".to_owned())),
-                None => Err("the class has no training model".to_owned()),
-            };
-            if !recall.cancelled() {
-                let variants = variants.map(Arc::new);
-                let _ = outbox.send(Message::Varied(Arc::new(Varied { settings, variants })));
+        let (singles, threads) = (self.host.singles(), self.setup.threads);
+        let (recall, outbox) = (self.varying.clone(), self.outbox.clone());
+        let told = Arc::new(subject.clone());
+        let asked = Arc::clone(&told);
+        let begun = std::thread::Builder::new().name("figure 1".into()).spawn(move || {
+            let tell = outbox.clone();
+            let watch = Watching::new(recall, move |done, _| {
+                let _ = tell.send(Message::Varying(Arc::clone(&told), done));
+            });
+            let made = AssertUnwindSafe(|| variation::of_class(&singles, &subject, threads, &watch));
+            let variation =
+                catch_unwind(made).unwrap_or_else(|_| Err("internal error in Figure 1, please report it".to_owned()));
+            if !watch.cancelled() {
+                let _ = outbox.send(Message::Varied(Arc::new(Varied { subject, variation })));
             }
         });
         if let Err(error) = begun {
-            self.host.warn(&format!("the system has no thread to give: {error}"));
+            let variation = Err(format!("the system has no thread to give: {error}"));
+            let _ = self.outbox.send(Message::Varied(Arc::new(Varied { subject: (*asked).clone(), variation })));
         }
     }
 }
