@@ -23,6 +23,7 @@ mod draw;
 mod legend;
 mod png;
 mod portrait;
+pub(crate) mod sixel;
 mod svg;
 
 /// Pixels of a PNG for each of the SVG's that make 600 dots an inch, what journals ask of line drawings.

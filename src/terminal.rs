@@ -13,8 +13,9 @@
 use std::io;
 
 pub use self::{
-    caps::{look, pictures},
+    caps::look,
     ending::{Ending, Exit},
+    graphics::{Pictures, ask},
 };
 use self::{events::Event, guard::Guard, input::Input, screen::Screen};
 use crate::{
@@ -32,12 +33,14 @@ mod canvas;
 mod caps;
 mod ending;
 mod events;
+mod graphics;
 mod guard;
 mod input;
 mod keys;
 mod kitty;
 mod screen;
 mod session;
+mod sixel;
 
 /// Why the screen could not be opened or had to be left.
 #[derive(Debug, thiserror::Error)]
@@ -98,8 +101,8 @@ pub struct Opening {
     pub look: Look,
     /// The mouse is listened to from the beginning.
     pub mouse: bool,
-    /// Shapes are shown as pictures; [`pictures`] finds out whether they can be.
-    pub pictures: bool,
+    /// Whether shapes are shown as pictures.
+    pub pictures: Pictures,
     /// The recipe to begin with; its parameters are `settings` already.
     pub recipe: Option<Loaded>,
     /// The last session of the data set, which is offered.
@@ -122,7 +125,7 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     let notify: Notify = Box::new(move |update| news.send(Event::Update(update)));
     let engine = start(notify).map_err(TerminalError::Engine)?;
     let guard = Guard::enter(queue.clone()).map_err(TerminalError::io("set up"))?;
-    let mut screen = Screen::new(guard, opening.look).map_err(TerminalError::io("set up"))?;
+    let mut screen = Screen::new(guard, opening.look, opening.pictures).map_err(TerminalError::io("set up"))?;
     let input = Input::begin(queue).map_err(TerminalError::io("read"))?;
     let mut state = State::new(opening.title, opening.settings);
     if let Some(recipe) = opening.recipe {
@@ -135,8 +138,6 @@ pub fn run<E: Engine>(opening: Opening, start: impl FnOnce(Notify) -> io::Result
     }
     if opening.look.ascii {
         (state.style, state.styles) = (Style::Plain, shape::PLAIN);
-    } else if opening.pictures {
-        (state.style, state.styles) = (Style::Pixels, shape::PICTURES);
     }
     let outcome = session::run(state, &engine, &mut screen, &inbox);
     // What is typed from now on belongs to the shell, which the user sees before the engine puts its things in order.

@@ -16,7 +16,7 @@ use std::{
 
 use eigenselect::{
     query::Settings,
-    terminal::{self, Engine, Notify, Opening},
+    terminal::{self, Engine, Notify, Opening, Pictures},
     ui::Look,
     workbench::{Command, Update},
 };
@@ -163,6 +163,66 @@ fn a_terminal_that_shows_pictures_gets_one_and_others_get_none() {
         assert_eq!(seat.end().exit_code(), 0);
         seat.assert_restored();
     }
+}
+
+#[test]
+fn a_terminal_that_answers_that_it_has_sixels_gets_them_and_another_is_asked_once() {
+    const SIXELS: &[(&str, &str)] =
+        &[("\x1b[c", "\x1b[?62;4;22c"), ("\x1b[?1;1;0S", "\x1b[?1;0;256S"), ("\x1b[16t", "\x1b[6;20;10t")];
+    const NONE: &[(&str, &str)] = &[("\x1b[c", "\x1b[?62;22c")];
+    let at = |answers| {
+        let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_tui"));
+        let cache = folder("sixels");
+        command.args([small(), "--cache", cache.to_str().unwrap(), "--set", "kmax=20"]);
+        command.env_remove("TERM_PROGRAM");
+        let seat = Seat::at_answering(command, 80, 24, answers);
+        seat.until_shown("up to date");
+        assert!(!seat.wrote(b"\x1b[c"), "nothing is asked before a shape is shown");
+        seat
+    };
+    let leave = |mut seat: Seat| {
+        seat.press("q");
+        assert_eq!(seat.end().exit_code(), 0);
+        seat.assert_restored();
+    };
+    let mut plain = at(NONE);
+    plain.press("9");
+    plain.until_shown("dots ×1.0");
+    plain.until_settled();
+    plain.press("19");
+    plain.until_settled();
+    assert_eq!((plain.written(b"\x1b[c"), plain.written(b"\x1bP"), plain.written(b"\x1b[16t")), (1, 0, 0));
+    leave(plain);
+
+    let mut seat = at(SIXELS);
+    let picture = b"\x1bP0;1q\"1;1;";
+    let pictures = |seat: &Seat| seat.written(picture);
+    seat.press("9");
+    seat.until_shown("pixels ×1.0");
+    seat.until("a picture", |_| pictures(&seat) == 1);
+    seat.until_settled();
+    assert_eq!(pictures(&seat), 1, "it is sent once");
+    let frame = seat.last_written(b"\x1b[?2026h");
+    assert!(frame.windows(picture.len()).any(|window| window == picture), "within a synchronised update");
+    assert!(frame.ends_with(b"\x1b\\\x1b8\x1b[?2026l"), "and the cursor is put back");
+    // What opens above it is not painted over, and it is erased below.
+    seat.press("?");
+    seat.until_shown("Keys");
+    assert!(pictures(&seat) == 1 && seat.last_written(b"\x1b[?2026h").starts_with(b"\x1b[?2026h\x1b7\x1b[m\x1b["));
+    seat.press("\x1b");
+    seat.until("the picture again", |_| pictures(&seat) == 2);
+    for turned in 3..6 {
+        seat.press("\x1b[C");
+        seat.until("the next picture", |_| pictures(&seat) >= turned);
+    }
+    seat.press("1");
+    seat.until_shown("HCBw");
+    seat.until_settled();
+    let before = pictures(&seat);
+    seat.press("2");
+    seat.until_settled();
+    assert_eq!(pictures(&seat), before);
+    leave(seat);
 }
 
 #[test]
@@ -472,7 +532,7 @@ fn faulty_program() {
         settings: Settings::default(),
         look: Look::default(),
         mouse: false,
-        pictures: false,
+        pictures: Pictures::None,
         recipe: None,
         last: None,
     };

@@ -156,6 +156,14 @@ fn an_eigenfunction_colours_the_shape() {
     let without = Look { colour: false, ..Look::default() };
     compare("Shape-function", &text(&buffer(&state, without, SMALL)));
     assert_ne!(text(&buffer(&state, without, SMALL)), plain, "without colour the value shows as density");
+    // The next one is on its way: nothing is painted until it is there.
+    let mut state = state;
+    let effects = update(&mut state, Action::TurnFunction(1));
+    assert!(effects.iter().all(|effect| !matches!(effect, Effect::Send(Command::Paint(_)))), "{effects:?}");
+    let function = |state: &State| state.scenes[0].function.as_ref().map(|function| function.index);
+    assert_eq!(function(&state), Some(3));
+    let state = replies::served(state);
+    assert_eq!(function(&state), Some(4));
 }
 
 /// Figures for pins: those of the sample with another T.

@@ -12,7 +12,7 @@
 //! colours = "many"          # auto, none, few (16), many (256), all
 //! ascii = false
 //! mouse = false
-//! graphics = "auto"         # auto, kitty, none: pictures of shapes
+//! graphics = "auto"         # auto, kitty, sixel, none: pictures of shapes
 //! log = "/tmp/tui.log"
 //!
 //! [cache]
@@ -33,6 +33,7 @@ use super::{
 };
 use crate::{
     query::{Parameter, Settings},
+    terminal::Pictures,
     ui::{Look, Shades},
 };
 
@@ -100,22 +101,24 @@ enum Colours {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Graphics {
-    /// Where the terminal is known to take them.
+    /// Where the terminal takes them.
     #[default]
     Auto,
     /// Always, by kitty's protocol.
     Kitty,
+    /// Always, by sixels.
+    Sixel,
     /// Never.
     None,
 }
 
-impl Graphics {
-    /// Whether they are, `known` saying what the terminal takes.
-    pub(super) fn shown(self, known: impl FnOnce() -> bool) -> bool {
-        match self {
-            Self::Auto => known(),
-            Self::Kitty => true,
-            Self::None => false,
+impl From<Graphics> for Pictures {
+    fn from(graphics: Graphics) -> Self {
+        match graphics {
+            Graphics::Auto => Self::Auto,
+            Graphics::Kitty => Self::Kitty,
+            Graphics::Sixel => Self::Sixels,
+            Graphics::None => Self::None,
         }
     }
 }

@@ -15,7 +15,11 @@ use super::{
     output,
     study::{open_store, threads},
 };
-use crate::{dataset, store, terminal, ui::Shades};
+use crate::{
+    dataset, store, terminal,
+    ui::Shades,
+    workbench::shape::{Packing, Raster},
+};
 
 /// `tui doctor`.
 #[derive(Debug, Args)]
@@ -97,12 +101,30 @@ fn screen(report: &mut Report) {
         (true, Shades::All) => "the terminal's sixteen, all for shapes",
     };
     report.good("colours", colours);
-    let pictures = if terminal::pictures() { "kitty's protocol" } else { "none: shapes are made of characters" };
-    report.good("pictures", pictures);
+    report.good("pictures", &pictures());
     if look.ascii {
         report.mind("characters", "ASCII alone: the locale (LC_ALL, LC_CTYPE, LANG) is not UTF-8");
     } else {
         report.good("characters", "UTF-8");
+    }
+}
+
+/// How shapes are shown, as the terminal answers.
+fn pictures() -> String {
+    let characters = "none: shapes are made of characters";
+    if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
+        return characters.to_owned();
+    }
+    match terminal::ask() {
+        Ok(Some(Raster { packing, cell: (wide, high) })) => {
+            let how = match packing {
+                Packing::Png => "kitty's protocol".to_owned(),
+                Packing::Sixels { colours } => format!("sixels of {colours} colours"),
+            };
+            format!("{how}, cells of {wide} × {high} pixels")
+        }
+        Ok(None) => characters.to_owned(),
+        Err(error) => format!("none: the terminal cannot be asked: {error}"),
     }
 }
 

@@ -42,7 +42,7 @@ pub(super) fn run(root: &Path, arguments: StudyArguments, screen: ScreenArgument
         title: root.display().to_string(),
         settings: study.settings.clone(),
         look: config.look(terminal::look()),
-        pictures: config.screen.graphics.shown(terminal::pictures),
+        pictures: config.screen.graphics.into(),
         mouse: screen.mouse || config.screen.mouse,
         recipe: study.recipe.clone(),
         last,

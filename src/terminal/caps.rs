@@ -40,12 +40,11 @@ fn from(variable: impl Fn(&str) -> Option<OsString>) -> Look {
 
 /// True where the terminal says that it shows pictures by kitty's protocol, and nothing stands between it and us that
 /// would swallow them.
-#[must_use]
-pub fn pictures() -> bool {
-    pictured(|name| env::var_os(name))
+pub(super) fn kitty() -> bool {
+    takes(|name| env::var_os(name))
 }
 
-fn pictured(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+fn takes(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let lower =
         |name: &str| variable(name).map(|value| value.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let term = lower("TERM");
@@ -98,7 +97,7 @@ mod tests {
     #[test]
     fn pictures_go_to_terminals_that_are_known_to_take_them() {
         let with = |variables: &[(&str, &str)]| {
-            pictured(|name| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| OsString::from(value)))
+            takes(|name| variables.iter().find(|(key, _)| *key == name).map(|(_, value)| OsString::from(value)))
         };
         assert!(with(&[("TERM", "xterm-kitty")]) && with(&[("TERM", "xterm-256color"), ("TERM_PROGRAM", "WezTerm")]));
         assert!(!with(&[("TERM", "xterm-256color")]) && !with(&[]));

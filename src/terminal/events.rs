@@ -25,6 +25,24 @@ pub(super) enum Press {
     Key(Key),
     /// A click on a column and a row, from 0.
     Click((u16, u16)),
+    /// None: what the terminal answers.
+    Answer(Answer),
+}
+
+/// What the terminal answers when it is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Answer {
+    /// What it is: whether sixels are among its attributes.
+    Attributes {
+        /// They are.
+        sixels: bool,
+    },
+    /// How many colours its graphics have.
+    Colours(u16),
+    /// Pixels of a cell, across and down.
+    Cell((u16, u16)),
+    /// Pixels of its area of text, across and down.
+    Area((u16, u16)),
 }
 
 /// Something that happened.
@@ -34,6 +52,8 @@ pub(super) enum Event {
     Key(Key),
     /// The mouse was clicked on a column and a row, from 0.
     Click((u16, u16)),
+    /// The terminal answered.
+    Answer(Answer),
     /// The window has another size.
     Resized,
     /// News from the engine.

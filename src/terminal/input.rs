@@ -75,6 +75,7 @@ fn read(queue: &Queue, stopped: &PipeReader) {
                     queue.send(match press {
                         Press::Key(key) => Event::Key(key),
                         Press::Click(place) => Event::Click(place),
+                        Press::Answer(answer) => Event::Answer(answer),
                     });
                 }
             }

@@ -4,11 +4,11 @@
 //! well-formed sequence is passed over. Pasted text is typed text. Escape and a character in one packet, which slow
 //! lines make of two presses, are two keys: the keymap knows no Alt.
 
-use super::events::Press;
+use super::events::{Answer, Press};
 use crate::workbench::keymap::Key;
 
-/// No key is longer; what is, is noise.
-const LONGEST: usize = 32;
+/// No key and no answer is longer; what is, is noise.
+const LONGEST: usize = 128;
 
 /// Cuts a stream of bytes into keys.
 #[derive(Debug, Default)]
@@ -23,6 +23,8 @@ enum Head {
     Whole(usize, Option<Key>),
     /// So many bytes, and the column and row of a click.
     Click(usize, (u16, u16)),
+    /// So many bytes, and what the terminal answers.
+    Answer(usize, Answer),
     /// The beginning of something.
     Part,
 }
@@ -42,6 +44,10 @@ impl Keys {
                 Head::Click(used, place) => {
                     at += used;
                     keys.push(Press::Click(place));
+                }
+                Head::Answer(used, answer) => {
+                    at += used;
+                    keys.push(Press::Answer(answer));
                 }
                 Head::Part => break,
             }
@@ -119,10 +125,24 @@ fn control_sequence(rest: &[u8]) -> Head {
     if let Some(numbers) = rest[..end].strip_prefix(b"<") {
         return mouse(numbers, rest[end], BEGUN + end + 1);
     }
-    let numbers: Vec<u16> = rest[..end]
+    let private = rest[..end].strip_prefix(b"?");
+    let numbers: Vec<u16> = private
+        .unwrap_or(&rest[..end])
         .split(|byte| *byte == b';')
         .map(|digits| std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).unwrap_or(0))
         .collect();
+    let used = BEGUN + end + 1;
+    match (private.is_some(), rest[end], &numbers[..]) {
+        (true, b'c', [_, attributes @ ..]) => {
+            return Head::Answer(used, Answer::Attributes { sixels: attributes.contains(&4) });
+        }
+        (true, b'S', [1, 0, colours]) => return Head::Answer(used, Answer::Colours(*colours)),
+        (false, b't', [6, high, wide]) => return Head::Answer(used, Answer::Cell((*wide, *high))),
+        (false, b't', [4, high, wide]) => return Head::Answer(used, Answer::Area((*wide, *high))),
+        // No key begins so.
+        (true, ..) => return Head::Whole(used, None),
+        _ => {}
+    }
     let number = numbers.first().copied().unwrap_or(0);
     let shift = numbers.get(1).is_some_and(|modifiers| modifiers.saturating_sub(1) & 1 == 1);
     let key = match rest[end] {
@@ -132,7 +152,7 @@ fn control_sequence(rest: &[u8]) -> Head {
         b'~' => tilde(number),
         last => single_shift(last),
     };
-    Head::Whole(BEGUN + end + 1, key)
+    Head::Whole(used, key)
 }
 
 /// What xterm's SGR encoding tells of the mouse: a button, a column and a row from 1, `M` when it goes down. Shift, Alt
@@ -207,6 +227,34 @@ mod tests {
     }
 
     #[test]
+    fn what_terminals_answer() {
+        let mut stream = Keys::default();
+        let answers = stream.feed(b"\x1b[?62;4;22c\x1b[?62;22c\x1b[?1;0;256S\x1b[6;20;10t\x1b[4;480;800tq");
+        let attributes = |sixels| Press::Answer(Answer::Attributes { sixels });
+        assert_eq!(
+            answers,
+            [
+                attributes(true),
+                attributes(false),
+                Press::Answer(Answer::Colours(256)),
+                Press::Answer(Answer::Cell((10, 20))),
+                Press::Answer(Answer::Area((800, 480))),
+                Press::Key(Key::Char('q')),
+            ]
+        );
+        // A level is no attribute, and what nobody asked for is no answer and no key.
+        assert_eq!(stream.feed(b"\x1b[?4c"), [attributes(false)]);
+        for bytes in [&b"\x1b[?1;3;0S"[..], b"\x1b[?S", b"\x1b[8;24;80t", b"\x1b[6;20t", b"\x1b[?1u", b"\x1b[>1;2c"] {
+            assert_eq!(stream.feed(bytes), [], "{bytes:?}");
+        }
+        // However long it is and however it is cut.
+        let long = format!("\x1b[?65{}c", ";4".repeat(40));
+        let (begin, end) = long.split_at(60);
+        assert_eq!(stream.feed(begin.as_bytes()), []);
+        assert_eq!(stream.feed(end.as_bytes()), [attributes(true)]);
+    }
+
+    #[test]
     fn what_terminals_send() {
         for (bytes, key) in [
             (&b"a"[..], Key::Char('a')),
@@ -248,15 +296,13 @@ mod tests {
 
     #[test]
     fn what_means_nothing_is_passed_over() {
-        for bytes in
-            [&b"\x1b[3~"[..], b"\x1b[200~", b"\x1b[?62;22c", b"\x1b[I", b"\0", b"\x1f", b"\xff", b"\xc3", b"\x1b[12"]
-        {
+        for bytes in [&b"\x1b[3~"[..], b"\x1b[200~", b"\x1b[I", b"\0", b"\x1f", b"\xff", b"\xc3", b"\x1b[12"] {
             assert_eq!(keys(bytes), [], "{bytes:?}");
         }
         assert_eq!(keys(b"\xc3(q"), [Key::Char('('), Key::Char('q')]);
         assert_eq!(keys(b"\x1b[12\x1b[A"), [Key::Up]);
         let mut endless = Keys::default();
-        assert_eq!(endless.feed(&[b"\x1b[".as_slice(), &[b'1'; 100]].concat()), []);
+        assert_eq!(endless.feed(&[b"\x1b[".as_slice(), &[b'1'; 200]].concat()), []);
         assert_eq!(endless.feed(b"q"), [Press::Key(Key::Char('q'))]);
     }
 

@@ -10,7 +10,7 @@ use std::{
 use signal_hook::consts::SIGINT;
 
 use super::{Ending, Engine, Exit, events::Event, screen::Surface};
-use crate::workbench::{Action, Effect, Leave, Mouse, State, Update, keymap, recipe, update};
+use crate::workbench::{Action, Effect, Leave, Mouse, State, Update, keymap, recipe, shape::Raster, update};
 
 /// So many events happen before a frame at most: a flood must not keep the screen from being drawn.
 const BATCH: usize = 256;
@@ -142,6 +142,10 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
                     }
                 }
             }
+            Event::Answer(answer) => {
+                let raster = self.surface.hear(answer)?;
+                self.pictures(raster);
+            }
             // On its way when the mouse was let go.
             Event::Click(_) => {}
             Event::Resized => self.measure()?,
@@ -219,7 +223,17 @@ impl<E: Engine, S: Surface> Session<'_, E, S> {
         let (columns, rows) = self.surface.size()?;
         self.apply(Action::Resize(columns, rows));
         self.due.sooner(Due::Now);
+        let raster = self.surface.measure()?;
+        self.pictures(raster);
         Ok(())
+    }
+
+    /// Learns how the screen takes pictures.
+    fn pictures(&mut self, raster: Option<Raster>) {
+        if let Some(raster) = raster.filter(|raster| !self.state.pictured(*raster)) {
+            self.due.sooner(Due::Now);
+            self.apply(Action::Pictures(raster));
+        }
     }
 
     fn ending(&self, exit: Exit) -> Ending {

@@ -144,7 +144,8 @@ pub(super) fn cells(scene: &Scene, picture: &Picture, pane: &mut Pane<'_>) {
     let look = pane.look();
     let coloured = scene.function.is_some();
     let ink = Ink { look, coloured };
-    let (across, down) = scene.style.pixels();
+    // Over the cells of a picture that the terminal lays on them nothing is written.
+    let Some((across, down)) = scene.style.parts() else { return };
     let (across, down) = (across as usize, down as usize);
     let rows = (picture.height / down).min(pane.height() as usize);
     let columns = (picture.width / across).min(pane.width() as usize);
@@ -155,7 +156,6 @@ pub(super) fn cells(scene: &Scene, picture: &Picture, pane: &mut Pane<'_>) {
                 Style::Dots => ink.dots((column, row), pixel),
                 Style::Blocks => ink.blocks(pixel(0, 0), pixel(0, 1)),
                 Style::Plain => pixel(0, 0).map(|seen| ink.plain(seen)),
-                // The terminal lays the picture over empty cells.
                 Style::Pixels => None,
             };
             if let Some((character, face)) = cell {

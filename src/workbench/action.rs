@@ -1,6 +1,6 @@
 //! Everything that can happen to the state, and everything the state can ask for.
 
-use super::{Command, Update, View};
+use super::{Command, Update, View, shape::Raster};
 use crate::query::Parameter;
 
 /// Something that happened: a key's meaning, or news.
@@ -168,6 +168,8 @@ pub enum Action {
     Commit,
     /// The screen has this size now, columns and rows.
     Resize(u16, u16),
+    /// The screen takes pictures of shapes, and how.
+    Pictures(Raster),
     /// News from the engine.
     News(Update),
     /// Something the user should know, in one line.

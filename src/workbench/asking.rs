@@ -125,11 +125,16 @@ pub fn scenes(state: &State) -> Vec<Scene> {
                 _ => None,
             }
         });
-        let function = found.filter(|_| cells != shape::THUMB);
+        // Until it is there the one before stays: the shape without any would be a picture for a moment.
+        let awaited = state.function.is_some_and(|index| {
+            found.is_none() && matches!(state.answered(&Question::Function { model, index }), Answered::Awaited)
+        });
+        let before = || state.scenes.iter().find(|scene| scene.model == model && awaited)?.function.clone();
+        let function = found.or_else(before).filter(|_| cells != shape::THUMB);
         // Small pictures are many, and characters do for them.
         let small = cells == shape::THUMB && state.style == shape::Style::Pixels;
         let style = if small { shape::Style::Dots } else { state.style };
-        Some(Scene { model, mesh: mesh(model)?, function, camera, cells, style })
+        Some(Scene { model, mesh: mesh(model)?, function, camera, cells, style, raster: state.raster })
     };
     match state.view {
         View::Shape => {

@@ -4,13 +4,20 @@
 //! Mesh ─► Solid (centred, with normals) ─► Picture (a shade and a value for each pixel) ─► cells, in the screen
 //! ```
 
-pub use self::{camera::Camera, painter::Painter, picture::Picture, solid::Solid};
+pub use self::{
+    camera::Camera,
+    packed::{Cover, Packed, Packing, Part, Raster},
+    painter::Painter,
+    picture::Picture,
+    solid::Solid,
+};
 
 use std::sync::Arc;
 
 use crate::mesh::Mesh;
 
 mod camera;
+mod packed;
 mod painter;
 mod picture;
 mod portrait;
@@ -113,15 +120,14 @@ pub const CHARACTERS: &[Style] = &[Style::Dots, Style::Blocks];
 pub const PICTURES: &[Style] = &[Style::Pixels, Style::Dots, Style::Blocks];
 
 impl Style {
-    /// Pixels of a cell, across and down.
+    /// What a cell is made of, across and down; none where the terminal lays a picture over empty cells.
     #[must_use]
-    pub const fn pixels(self) -> (u16, u16) {
+    pub const fn parts(self) -> Option<(u16, u16)> {
         match self {
-            Self::Dots => (2, 4),
-            Self::Blocks => (1, 2),
-            Self::Plain => (1, 1),
-            // The size of a common cell: the terminal fits the picture to its own.
-            Self::Pixels => (8, 16),
+            Self::Dots => Some((2, 4)),
+            Self::Blocks => Some((1, 2)),
+            Self::Plain => Some((1, 1)),
+            Self::Pixels => None,
         }
     }
 
@@ -166,6 +172,8 @@ pub struct Scene {
     pub cells: (u16, u16),
     /// How it becomes characters.
     pub style: Style,
+    /// How the terminal takes it, where it does not become characters.
+    pub raster: Raster,
 }
 
 impl PartialEq for Scene {
@@ -176,14 +184,15 @@ impl PartialEq for Scene {
             && Arc::ptr_eq(&self.mesh, &other.mesh)
             && function(self) == function(other)
             && (self.camera, self.cells, self.style) == (other.camera, other.cells, other.style)
+            && (self.style != Style::Pixels || self.raster == other.raster)
     }
 }
 
 impl Scene {
     /// Pixels across and down.
     #[must_use]
-    pub const fn pixels(&self) -> (usize, usize) {
-        let (across, down) = self.style.pixels();
+    pub fn pixels(&self) -> (usize, usize) {
+        let (across, down) = self.style.parts().unwrap_or(self.raster.cell);
         (self.cells.0 as usize * across as usize, self.cells.1 as usize * down as usize)
     }
 }

@@ -9,7 +9,7 @@ use super::{
     lists::Order,
     parameters,
     recipe::Loaded,
-    shape::{self, Camera, Pictures, Scene, Style},
+    shape::{self, Camera, Pictures, Raster, Scene, Style},
 };
 use crate::query::{Answer, Parameter, Part, Question, Settings, Stage};
 
@@ -246,6 +246,8 @@ pub struct State {
     pub style: Style,
     /// The styles that the screen has.
     pub styles: &'static [Style],
+    /// How it takes pictures, where pixels are among its styles.
+    pub raster: Raster,
     /// What was wanted painted.
     pub scenes: Vec<Scene>,
     /// What was painted.
@@ -267,6 +269,20 @@ pub struct State {
 }
 
 impl State {
+    /// Whether pictures are among the styles, and taken in this way.
+    #[must_use]
+    pub fn pictured(&self, raster: Raster) -> bool {
+        self.styles.contains(&Style::Pixels) && self.raster == raster
+    }
+
+    /// The screen takes pictures in this way. Shapes become pictures where they could not be before.
+    pub(super) fn take_pictures(&mut self, raster: Raster) {
+        self.raster = raster;
+        if !self.styles.contains(&Style::Pixels) {
+            (self.style, self.styles) = (Style::Pixels, shape::PICTURES);
+        }
+    }
+
     /// The state before the first answer.
     #[must_use]
     pub fn new(title: impl Into<String>, settings: Settings) -> Self {
@@ -307,6 +323,7 @@ impl State {
             camera: Camera::default(),
             style: Style::default(),
             styles: shape::CHARACTERS,
+            raster: Raster::default(),
             scenes: Vec::new(),
             pictures: Pictures::default(),
             alone: false,

@@ -41,7 +41,7 @@ pub fn update(state: &mut State, action: Action) -> Vec<Effect> {
 }
 
 fn happen(state: &mut State, action: Action) -> Vec<Effect> {
-    if !matches!(action, Action::News(_) | Action::Resize(..) | Action::Report(_)) {
+    if !matches!(action, Action::News(_) | Action::Resize(..) | Action::Pictures(_) | Action::Report(_)) {
         state.notice = None;
     }
     match action {
@@ -91,6 +91,7 @@ fn happen(state: &mut State, action: Action) -> Vec<Effect> {
         Action::Recall => return recall(state),
         Action::Report(text) => state.notice = Some(Notice { text, bad: true, brief: false }),
         Action::Resize(columns, rows) => state.size = (columns, rows),
+        Action::Pictures(raster) => state.take_pictures(raster),
         Action::Insert(_) | Action::Erase | Action::EraseAll | Action::Left | Action::Right => typed(state, &action),
         Action::Edit => {
             state.purpose = Purpose::Value;

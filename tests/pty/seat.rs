@@ -24,7 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(90);
 /// Someone in front of a program.
 pub struct Seat {
     master: Box<dyn MasterPty + Send>,
-    keyboard: Box<dyn Write + Send>,
+    keyboard: Arc<Mutex<Box<dyn Write + Send>>>,
     child: Box<dyn Child + Send + Sync>,
     eyes: Arc<Mutex<Parser>>,
     bytes: Arc<AtomicUsize>,
@@ -49,7 +49,17 @@ impl Seat {
     }
 
     /// Sits down in front of a program on a terminal of this size.
-    pub fn at(mut command: CommandBuilder, columns: u16, rows: u16) -> Self {
+    pub fn at(command: CommandBuilder, columns: u16, rows: u16) -> Self {
+        Self::at_answering(command, columns, rows, &[])
+    }
+
+    /// Sits down in front of a program on a terminal that answers when it is asked: questions with their answers.
+    pub fn at_answering(
+        mut command: CommandBuilder,
+        columns: u16,
+        rows: u16,
+        answers: &'static [(&'static str, &'static str)],
+    ) -> Self {
         command.env("TERM", "xterm-256color");
         command.env("LC_ALL", "C.UTF-8");
         command.env_remove("NO_COLOR");
@@ -58,7 +68,8 @@ impl Seat {
         let before = modes(&*pair.master);
         let child = pair.slave.spawn_command(command).unwrap();
         drop(pair.slave);
-        let keyboard = pair.master.take_writer().unwrap();
+        let keyboard = Arc::new(Mutex::new(pair.master.take_writer().unwrap()));
+        let answering = Arc::clone(&keyboard);
         let mut light = pair.master.try_clone_reader().unwrap();
         let eyes = Arc::new(Mutex::new(Parser::new(cells(rows), cells(columns), 0)));
         let bytes = Arc::new(AtomicUsize::new(0));
@@ -66,7 +77,19 @@ impl Seat {
         let (seeing, counting, keeping) = (Arc::clone(&eyes), Arc::clone(&bytes), Arc::clone(&written));
         thread::spawn(move || {
             let mut buffer = [0; 1 << 12];
+            let mut heard = Vec::new();
             while let Ok(count @ 1..) = light.read(&mut buffer) {
+                heard.extend_from_slice(&buffer[..count]);
+                for (question, answer) in answers {
+                    let asked = heard.windows(question.len()).filter(|window| *window == question.as_bytes()).count();
+                    answering.lock().unwrap().write_all(answer.repeat(asked).as_bytes()).unwrap();
+                }
+                // The beginning of a question is kept until its end comes.
+                let begun = heard.iter().rposition(|byte| *byte == 0x1b).filter(|at| {
+                    let rest = &heard[*at..];
+                    answers.iter().any(|(asked, _)| rest.len() < asked.len() && asked.as_bytes().starts_with(rest))
+                });
+                heard.drain(..begun.unwrap_or(heard.len()));
                 seeing.lock().unwrap().process(&buffer[..count]);
                 keeping.lock().unwrap().extend_from_slice(&buffer[..count]);
                 counting.fetch_add(count, Ordering::SeqCst);
@@ -77,8 +100,9 @@ impl Seat {
 
     /// Presses keys, given as the bytes that a terminal sends for them.
     pub fn press(&mut self, keys: &str) {
-        self.keyboard.write_all(keys.as_bytes()).unwrap();
-        self.keyboard.flush().unwrap();
+        let mut keyboard = self.keyboard.lock().unwrap();
+        keyboard.write_all(keys.as_bytes()).unwrap();
+        keyboard.flush().unwrap();
     }
 
     /// Looks at the screen.
@@ -125,6 +149,18 @@ impl Seat {
     /// True when the program has written these bytes in a row at any time.
     pub fn wrote(&self, bytes: &[u8]) -> bool {
         self.written.lock().unwrap().windows(bytes.len()).any(|window| window == bytes)
+    }
+
+    /// How often it has written them.
+    pub fn written(&self, bytes: &[u8]) -> usize {
+        self.written.lock().unwrap().windows(bytes.len()).filter(|window| *window == bytes).count()
+    }
+
+    /// The last that it has written from these bytes on.
+    pub fn last_written(&self, bytes: &[u8]) -> Vec<u8> {
+        let written = self.written.lock().unwrap();
+        let at = written.windows(bytes.len()).rposition(|window| window == bytes);
+        at.map_or_else(Vec::new, |at| written[at..].to_vec())
     }
 
     /// The terminal's settings now.

@@ -7,10 +7,10 @@ use std::{
 
 use signal_hook::consts::SIGTERM;
 
-use super::*;
+use super::{super::events, *};
 use crate::{
     query::{Answer, Progress, Settings},
-    workbench::{Command, View, keymap::Key},
+    workbench::{Command, View, keymap::Key, shape::Style},
 };
 
 /// Remembers what was drawn and asked of it.
@@ -28,6 +28,15 @@ struct Paper {
 impl Surface for Paper {
     fn size(&self) -> io::Result<(u16, u16)> {
         Ok((90, 30))
+    }
+
+    fn measure(&mut self) -> io::Result<Option<Raster>> {
+        Ok(None)
+    }
+
+    fn hear(&mut self, answer: events::Answer) -> io::Result<Option<Raster>> {
+        let events::Answer::Cell(cell) = answer else { return Ok(None) };
+        Ok(Some(Raster { cell, ..Raster::default() }))
     }
 
     fn draw(&mut self, state: &State) -> io::Result<()> {
@@ -248,4 +257,24 @@ fn clicks_count_once_the_mouse_is_ours() {
     let (ending, paper, _) = played([Event::Key(Key::Char('M')), Event::Key(Key::Char('M')), click()]);
     assert_eq!(paper.mouse, [true, false]);
     assert!(ending.session.is_some_and(|session| !session.contains("Tables")));
+}
+
+#[test]
+fn a_terminal_that_says_that_it_takes_pictures_is_drawn_anew_with_them() {
+    let (_, paper, _) = played([Event::Answer(events::Answer::Attributes { sixels: false })]);
+    assert!(paper.drawn.iter().all(|state| state.style == Style::Dots));
+    let (sender, inbox) = mpsc::channel();
+    let told = thread::spawn(move || {
+        for cell in [(9, 18), (9, 18), (10, 20)] {
+            thread::sleep(Duration::from_millis(100));
+            sender.send(Event::Answer(events::Answer::Cell(cell))).unwrap();
+        }
+        thread::sleep(Duration::from_millis(100));
+    });
+    let mut paper = Paper::default();
+    run(State::new("data", Settings::default()), &Ear::default(), &mut paper, &inbox).unwrap();
+    told.join().unwrap();
+    let cells: Vec<_> = paper.drawn.iter().map(|state| (state.style, state.raster.cell)).collect();
+    // What is known already draws nothing.
+    assert_eq!(cells, [(Style::Dots, (8, 16)), (Style::Pixels, (9, 18)), (Style::Pixels, (10, 20))]);
 }

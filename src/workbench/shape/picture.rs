@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Camera, Solid,
+    Camera, Packed, Solid,
     solid::{dot, sub},
 };
 
@@ -31,8 +31,8 @@ pub struct Picture {
     pub shades: Vec<f32>,
     /// The function's value, from −1 to 1; 0 without one.
     pub values: Vec<f32>,
-    /// The picture as a PNG with a clear ground, for [`Style::Pixels`](super::Style::Pixels) alone.
-    pub png: Option<Arc<Vec<u8>>>,
+    /// The picture as the terminal takes it, for [`Style::Pixels`](super::Style::Pixels) alone.
+    pub packed: Option<Arc<Packed>>,
 }
 
 impl Picture {
@@ -47,7 +47,7 @@ impl Picture {
         values: Option<&[f64]>,
     ) -> Self {
         let mut picture =
-            Self { width, height, shades: vec![-1.0; width * height], values: vec![0.0; width * height], png: None };
+            Self { width, height, shades: vec![-1.0; width * height], values: vec![0.0; width * height], packed: None };
         let mut depths = vec![f32::NEG_INFINITY; width * height];
         let axes = camera.axes();
         let half = (width as f32).min(height as f32 * aspect) / 2.0 * FILL * camera.scale();

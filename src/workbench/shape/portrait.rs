@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Picture, Scene, Solid};
-use crate::figure::{self, Bar, Portrait};
+use crate::figure::{Bar, Portrait};
 
 /// Pixels of the side; each is the mean of [`FINE`] × [`FINE`] painted ones.
 const SIDE: usize = 1440;
@@ -46,20 +46,6 @@ impl Scene {
     }
 }
 
-/// The picture as a PNG whose ground is clear; none where it has no pixels.
-pub(super) fn clear_png(picture: &Picture, coloured: bool) -> Option<Vec<u8>> {
-    let mut pixels = Vec::with_capacity(4 * picture.width * picture.height);
-    for (row, column) in (0..picture.height).flat_map(|row| (0..picture.width).map(move |column| (row, column))) {
-        if picture.at(column, row).is_some() {
-            let seen = seen(picture, column, row, coloured).map(|part| part.round().clamp(0.0, 255.0) as u8);
-            pixels.extend([seen[0], seen[1], seen[2], 255]);
-        } else {
-            pixels.extend([0; 4]);
-        }
-    }
-    figure::pixels_png(picture.width as u32, picture.height as u32, pixels).ok()
-}
-
 /// Rows and columns of the print that hold something, with a margin; at least a third of the side each way.
 fn bounds(picture: &Picture) -> (Range<usize>, Range<usize>) {
     let seen = |row: usize, column: usize| picture.at(column * FINE, row * FINE).is_some();
@@ -74,17 +60,47 @@ fn bounds(picture: &Picture) -> (Range<usize>, Range<usize>) {
     (cut(&|row| (0..SIDE).any(|column| seen(row, column))), cut(&|column| (0..SIDE).any(|row| seen(row, column))))
 }
 
-/// The colour of a painted pixel.
-fn seen(picture: &Picture, column: usize, row: usize, coloured: bool) -> [f32; 3] {
-    let Some((shade, value)) = picture.at(column, row) else { return [255.0; 3] };
+/// What a painted pixel is drawn with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Ink {
+    /// A surface without a function, from 0, dark, to 1, lit.
+    Plain { shade: f32 },
+    /// The value of a function, from −1 to 1, and the shade.
+    Valued { shade: f32, value: f32 },
+    /// Where a function is 0.
+    Nodal,
+}
+
+/// What a painted pixel is drawn with; none where nothing is seen.
+pub(super) fn ink(picture: &Picture, column: usize, row: usize, coloured: bool) -> Option<Ink> {
+    let (shade, value) = picture.at(column, row)?;
     if !coloured {
-        return PLAIN.map(|part| part * (0.25 + 0.75 * shade));
+        return Some(Ink::Plain { shade });
     }
     let crosses = |other: Option<(f32, f32)>| other.is_some_and(|(_, other)| (other < 0.0) != (value < 0.0));
-    if crosses(picture.at(column + 1, row)) || crosses(picture.at(column, row + 1)) {
-        return NODAL;
+    let nodal = crosses(picture.at(column + 1, row)) || crosses(picture.at(column, row + 1));
+    Some(if nodal { Ink::Nodal } else { Ink::Valued { shade, value } })
+}
+
+impl Ink {
+    /// Red, green and blue, from 0 to 255.
+    fn colour(self) -> [f32; 3] {
+        match self {
+            Self::Plain { shade } => PLAIN.map(|part| part * (0.25 + 0.75 * shade)),
+            Self::Valued { shade, value } => colour(value).map(|part| part * (0.5 + 0.5 * shade)),
+            Self::Nodal => NODAL,
+        }
     }
-    colour(value).map(|part| part * (0.5 + 0.5 * shade))
+
+    /// The same in whole numbers.
+    pub(super) fn parts(self) -> [u8; 3] {
+        self.colour().map(|part| part.round().clamp(0.0, 255.0) as u8)
+    }
+}
+
+/// The colour of a painted pixel on white ground.
+fn seen(picture: &Picture, column: usize, row: usize, coloured: bool) -> [f32; 3] {
+    ink(picture, column, row, coloured).map_or([255.0; 3], Ink::colour)
 }
 
 /// The colour of a value from −1 to 1.
@@ -100,7 +116,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::{
-        super::{Camera, Function, Style},
+        super::{Camera, Function, Raster, Style},
         *,
     };
     use crate::mesh::Mesh;
@@ -126,6 +142,7 @@ mod tests {
             camera: Camera { yaw: 0, pitch: 0, zoom: 0 },
             cells: (4, 2),
             style: Style::Dots,
+            raster: Raster::default(),
         };
         let portrait = scene.portrait("a square", "");
         let (wide, high) = (portrait.width as usize, portrait.height as usize);
