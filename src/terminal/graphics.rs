@@ -141,8 +141,8 @@ pub fn ask() -> io::Result<Option<Raster>> {
     Ok(graphics.raster(size, window()))
 }
 
-/// Asks and hears until nothing more is to be asked: each question ends with one for the attributes, so that its answers
-/// are known to have come.
+/// Asks and hears until nothing more is to be asked: each question ends with one for the attributes, so that its
+/// answers are known to have come.
 fn converse(graphics: &mut Graphics, mut question: Vec<u8>) -> io::Result<()> {
     let stdin = io::stdin();
     let (mut keys, mut bytes) = (Keys::default(), [0; 1 << 10]);
