@@ -37,6 +37,7 @@ mod edge;
 mod flip;
 mod input;
 mod relax;
+mod set;
 mod shape;
 mod sizing;
 mod surface;

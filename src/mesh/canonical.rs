@@ -1,10 +1,23 @@
 //! One form for all orders in which a file may list the same vertices and triangles, and its hash.
 
-use super::{GeometryHash, Mesh};
+use super::{GeometryHash, Mesh, by_vertex::ByVertex};
 use crate::watch::{Pulse, Stopped, Unwatched};
 
 /// Domain of the geometry hash. Whoever changes the canonical form changes this line.
 const CONTEXT: &str = "eigenselect 2026 canonical triangle mesh v1";
+
+/// A number for each coordinate that ascends as [`f64::total_cmp`] has them; −0 is 0.
+fn rank(coordinate: f64) -> u64 {
+    // Adding 0 turns −0 into 0 and changes nothing else.
+    let bits = (coordinate + 0.0).to_bits();
+    // Of negative numbers all bits are turned, of others the sign.
+    bits ^ (((bits as i64 >> 63) as u64) | 1 << 63)
+}
+
+/// The triangle from its smallest index on: the least of the three, as a vertex may be named twice.
+fn first_least([a, b, c]: [u32; 3]) -> [u32; 3] {
+    [a, b, c].min([b, c, a]).min([c, a, b])
+}
 
 impl Mesh {
     /// The same surface, independent of the order in which its file listed it.
@@ -28,6 +41,9 @@ impl Mesh {
     /// # Errors
     /// When the watch cancels.
     pub(crate) fn canonical_watched(&self, pulse: &Pulse) -> Result<Self, Stopped> {
+        if self.is_canonical(pulse)? {
+            return Ok(self.clone());
+        }
         let count = self.vertices.len();
         let mut named = Vec::with_capacity(self.triangles.len());
         for &triangle in &self.triangles {
@@ -41,31 +57,51 @@ impl Mesh {
         for vertex in named.iter().flatten() {
             used[*vertex as usize] = true;
         }
-        // Adding 0 turns −0 into 0 and changes nothing else.
-        let mut order: Vec<([f64; 3], u32)> = (0..)
-            .zip(&self.vertices)
-            .filter(|&(vertex, _)| used[vertex as usize])
-            .map(|(vertex, position)| (position.map(|coordinate| coordinate + 0.0), vertex))
-            .collect();
+        let kept = (0..).zip(&self.vertices).filter(|&(vertex, _)| used[vertex as usize]);
+        let mut order: Vec<(u64, u32)> = kept.map(|(vertex, position)| (rank(position[0]), vertex)).collect();
         pulse.beat(20 * count)?;
+        let beside = |vertex: u32| self.vertices[vertex as usize].map(rank);
         pulse.sort(&mut order, &|(a, i), (b, j)| {
-            a[0].total_cmp(&b[0])
-                .then_with(|| a[1].total_cmp(&b[1]))
-                .then_with(|| a[2].total_cmp(&b[2]))
-                .then_with(|| i.cmp(j))
+            a.cmp(b).then_with(|| beside(*i).cmp(&beside(*j))).then_with(|| i.cmp(j))
         })?;
         let mut place = vec![0u32; count];
         for (new, &(_, old)) in (0..).zip(&order) {
             place[old as usize] = new;
         }
-        for triangle in &mut named {
-            let [a, b, c] = triangle.map(|vertex| place[vertex as usize]);
-            // The least of the three, not the one at the smallest index: a vertex may be named twice.
-            *triangle = [a, b, c].min([b, c, a]).min([c, a, b]);
-            pulse.beat(10)?;
+        let renamed = || named.iter().map(|triangle| first_least(triangle.map(|vertex| place[vertex as usize])));
+        let mut by_first = ByVertex::new(order.len(), || renamed().map(|triangle| (triangle[0], triangle)), pulse)?;
+        for list in by_first.lists() {
+            pulse.sort(list, &Ord::cmp)?;
         }
-        pulse.sort(&mut named, &Ord::cmp)?;
-        Ok(Self { vertices: order.into_iter().map(|(position, _)| position).collect(), triangles: named })
+        let vertices = order.into_iter().map(|(_, old)| self.vertices[old as usize].map(|coordinate| coordinate + 0.0));
+        Ok(Self { vertices: vertices.collect(), triangles: by_first.into_items() })
+    }
+
+    /// Whether this is the canonical form already.
+    fn is_canonical(&self, pulse: &Pulse) -> Result<bool, Stopped> {
+        let mut before = [0; 3];
+        for position in &self.vertices {
+            pulse.beat(3)?;
+            let here = position.map(rank);
+            if here < before || position.iter().any(|coordinate| coordinate.to_bits() == (-0.0_f64).to_bits()) {
+                return Ok(false);
+            }
+            before = here;
+        }
+        let mut used = vec![self.triangles.is_empty(); self.vertices.len()];
+        let mut before = [0; 3];
+        for &triangle in &self.triangles {
+            pulse.beat(5)?;
+            if triangle < before || triangle != first_least(triangle) {
+                return Ok(false);
+            }
+            before = triangle;
+            for vertex in triangle {
+                let Some(used) = used.get_mut(vertex as usize) else { return Ok(false) };
+                *used = true;
+            }
+        }
+        Ok(used.into_iter().all(|used| used))
     }
 
     /// blake3 of the canonical form: equal for the same shape in another vertex order, face order or file format.

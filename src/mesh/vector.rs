@@ -87,6 +87,16 @@ impl V3 {
     }
 }
 
+/// The greater of two numbers: one instruction, which [`f64::max`] is not for it also sees to what is no number.
+pub fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers, as [`greater`].
+pub fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 pub fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

@@ -5,7 +5,7 @@ use super::{
     shape::SLIVER,
     work::{IDLE, Kind, LONG, MOVE, Work},
 };
-use crate::watch::Stopped;
+use crate::{mesh::halfedge::sides, watch::Stopped};
 
 impl Work<'_> {
     /// Splits or collapses until there are `count` vertices.
@@ -13,7 +13,7 @@ impl Work<'_> {
         while self.count() < count {
             let before = self.count();
             // Not all of one pass: their halves may be longer than the next.
-            let share = (count - before).min(self.mesh.slots() as usize / 48 + 1);
+            let share = (count - before).min(self.mesh.triangle_slots() as usize / 16 + 1);
             for (length2, h) in self.edges_by_length(share, true)? {
                 self.pulse.beat(MOVE)?;
                 if self.stretch2(h) == length2 {
@@ -55,10 +55,12 @@ impl Work<'_> {
     /// Gives up all creases but the boundary, and the shape of triangles.
     fn loosen(&mut self) -> Result<(), Stopped> {
         self.loose = true;
-        for h in 0..self.mesh.slots() {
-            self.pulse.beat(IDLE)?;
-            if self.is_edge(h) && self.mesh.is_marked(h) && !self.is_boundary(h) {
-                self.mesh.mark(h, false);
+        for triangle in 0..self.mesh.triangle_slots() {
+            self.pulse.beat(3 * IDLE)?;
+            for h in sides(triangle) {
+                if self.is_edge(h) && self.mesh.is_marked(h) && !self.is_boundary(h) {
+                    self.mesh.mark(h, false);
+                }
             }
         }
         for a in 0..self.mesh.vertex_slots() {
@@ -86,20 +88,31 @@ impl Work<'_> {
 
     /// The so many longest edges, or shortest, with their squared lengths over those aimed at: these first.
     fn edges_by_length(&self, share: usize, longest: bool) -> Result<Vec<(f64, u32)>, Stopped> {
-        // Where a few are wanted, they are sought among those far from the length aimed at.
-        let far = if longest { [1.5, 1.0, 0.0] } else { [0.6, 1.0, f64::INFINITY] };
-        let mut edges = Vec::new();
-        for stretch2 in far {
+        // Where a few are wanted, they are sought among those far from the length aimed at, then beyond it.
+        let (far2, beyond2) = if longest { (1.5, 1.0) } else { (0.6, 1.0) };
+        let is_past = |length2: f64, limit: f64| if longest { length2 >= limit } else { length2 <= limit };
+        let (mut edges, mut nearer) = (Vec::new(), Vec::new());
+        for all in [false, true] {
             edges.clear();
-            for h in 0..self.mesh.slots() {
-                self.pulse.beat(IDLE)?;
-                if !self.is_edge(h) {
+            nearer.clear();
+            for triangle in 0..self.mesh.triangle_slots() {
+                self.pulse.beat(3 * IDLE)?;
+                if !self.mesh.has(sides(triangle)[0]) {
                     continue;
                 }
-                let limit = stretch2 * self.aim2(h);
-                if (longest && self.length2(h) >= limit) || (!longest && self.length2(h) <= limit) {
-                    edges.push((self.stretch2(h), h));
+                let (lengths2, aims2) = self.lengths2(triangle);
+                let is_edge = self.mesh.is_edges(triangle);
+                for (side, h) in sides(triangle).into_iter().enumerate() {
+                    let (length2, aim2) = (lengths2[side], aims2[side]);
+                    if is_edge[side] & (is_past(length2, beyond2 * aim2) | all) && self.is_edge(h) {
+                        let far = is_past(length2, far2 * aim2);
+                        let place = if far { &mut edges } else { &mut nearer };
+                        place.push((length2 / aim2, h));
+                    }
                 }
+            }
+            if edges.len() < share {
+                edges.append(&mut nearer);
             }
             if edges.len() >= share {
                 break;

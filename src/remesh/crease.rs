@@ -6,7 +6,7 @@
 use super::surface::Surface;
 use crate::{
     mesh::{
-        halfedge::{HalfEdges, next},
+        halfedge::{HalfEdges, next, sides, triangle_of},
         vector::V3,
     },
     watch::{Pulse, Stopped},
@@ -33,10 +33,12 @@ const SHORT: f64 = 6.0;
 /// When the watch cancels.
 pub(super) fn find(surface: &mut Surface, length: f64, pulse: &Pulse) -> Result<(), Stopped> {
     let mut sharp = Vec::new();
-    for h in 0..surface.mesh.slots() {
-        pulse.beat(20)?;
-        if surface.mesh.is_edge(h) && !surface.mesh.is_marked(h) && is_crease(surface, h, length, pulse)? {
-            sharp.push(h);
+    for triangle in 0..surface.mesh.triangle_slots() {
+        pulse.beat(40)?;
+        for h in sides(triangle) {
+            if surface.mesh.is_edge(h) && !surface.mesh.is_marked(h) && is_crease(surface, h, length, pulse)? {
+                sharp.push(h);
+            }
         }
     }
     let mesh = &mut surface.mesh;
@@ -60,8 +62,7 @@ fn is_crease(surface: &Surface, h: u32, length: f64, pulse: &Pulse) -> Result<bo
     if !surface.is_real(h) || !surface.is_real(t) {
         return Ok(false);
     }
-    let (one, two) = (surface.face_normal(h / 3), surface.face_normal(t / 3));
-    let (n1, n2) = (one.norm(), two.norm());
+    let ((one, n1), (two, n2)) = (surface.span(triangle_of(h)), surface.span(triangle_of(t)));
     if one.dot(two) >= SHARP * n1 * n2 || n1 <= 0.0 || n2 <= 0.0 {
         return Ok(false);
     }
@@ -73,8 +74,8 @@ fn is_crease(surface: &Surface, h: u32, length: f64, pulse: &Pulse) -> Result<bo
         // Into the triangle, at a right angle to the edge.
         let inwards = if side == h { normal.cross(along) } else { along.cross(normal) }.unit();
         [0.5, 1.0].into_iter().all(|share| {
-            let spot = surface.nearest(middle + inwards * (share * BESIDE * length), side);
-            let there: V3 = surface.face_normal(spot.side / 3);
+            let (_, face) = surface.nearest_point(middle + inwards * (share * BESIDE * length), side);
+            let there: V3 = surface.face_normal(face);
             there.dot(normal) > FLAT * there.norm() * normal.norm()
         })
     }))

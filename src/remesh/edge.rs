@@ -80,17 +80,25 @@ impl Work<'_> {
         let (a, b) = (self.mesh.start(h), self.mesh.end(h));
         // The one that may do less is the end, which stays.
         let h = if self.kinds[a as usize] > self.kinds[b as usize] { self.mesh.twin(h) } else { h };
+        let [mut from, mut to] = std::mem::take(&mut self.rings);
+        let spot = self.collapsed(h, longest, good, [&mut from, &mut to]);
+        self.rings = [from, to];
+        let Some(spot) = spot else { return false };
+        let b = self.mesh.end(h) as usize;
+        self.mesh.collapse(h, spot.at);
+        self.sides[b] = spot.side;
+        self.normals[b] = spot.normal;
+        self.limits[b] = spot.limit;
+        true
+    }
+
+    /// Where the end of an edge goes when its start collapses into it, if it may; `rings` is scratch.
+    fn collapsed(&self, h: u32, longest: f64, good: f64, rings: [&mut Vec<u32>; 2]) -> Option<Spot> {
         let (a, b) = (self.mesh.start(h), self.mesh.end(h));
         let (mine, its) = (self.kinds[a as usize], self.kinds[b as usize]);
         let marked = self.mesh.is_marked(h);
-        if mine == Kind::Corner
-            || (mine == Kind::Crease && !marked)
-            || !self.mesh.can_collapse_to(h, if good > 1.0 { 3 } else { 4 })
-        {
-            return false;
-        }
-        if mine == Kind::Crease && self.joins_creases(h) {
-            return false;
+        if mine == Kind::Corner || (mine == Kind::Crease && (!marked || self.joins_creases(h))) {
+            return None;
         }
         let spot = if mine == its {
             let middle = self.mesh.point(a).lerp(self.mesh.point(b), 0.5);
@@ -103,26 +111,33 @@ impl Work<'_> {
                 limit: self.limits[b as usize],
             }
         };
+        // What most often forbids it comes first.
         let longest2 = longest * longest * self.within(spot.limit);
         let reaches = |x: u32| {
             self.is_ghost(x) || distance2(self.mesh.point(x), spot.at) < longest2 * self.within(self.limits[x as usize])
         };
-        if !self.mesh.neighbours(a).all(reaches) || !self.mesh.neighbours(b).all(reaches) {
-            return false;
+        let [from, to] = rings;
+        for (ring, x) in [(&mut *from, a), (&mut *to, b)] {
+            self.mesh.ring(x, ring);
+            if !ring.iter().all(|&y| reaches(y)) {
+                return None;
+            }
         }
-        let is_good = |x, other| good <= SLIVER && self.ring_is_good(x, spot.at, spot.normal, other);
-        let fits = self.loose || (is_good(a, b) && is_good(b, a)) || {
+        let [from, to] = [&*from, &*to];
+        if !self.mesh.can_collapse_rings(h, from, to, if good > 1.0 { 3 } else { 4 }) {
+            return None;
+        }
+        let is_good = |x: u32, ring: &[u32], other| {
+            good <= SLIVER
+                && self.kinds[x as usize] == Kind::Free
+                && self.ring_is_good(ring, spot.at, spot.normal, other)
+        };
+        let fits = self.loose || (is_good(a, from, b) && is_good(b, to, a)) || {
             let new = self.ring_quality(a, spot.at, spot.normal, b).min(self.ring_quality(b, spot.at, spot.normal, a));
             let old = |x: u32| self.ring_quality(x, self.mesh.point(x), self.normals[x as usize], x);
             new > good || new > old(a).min(old(b))
         };
-        if fits {
-            self.mesh.collapse(h, spot.at);
-            self.sides[b as usize] = spot.side;
-            self.normals[b as usize] = spot.normal;
-            self.limits[b as usize] = spot.limit;
-        }
-        fits
+        fits.then_some(spot)
     }
 
     /// Whether a collapse would lay one crease on another.

@@ -2,10 +2,11 @@
 
 use super::{
     RemeshError,
+    set::Set,
     shape::{SLIVER, quality},
     work::{IDLE, Work},
 };
-use crate::mesh::halfedge::prev;
+use crate::mesh::halfedge::{next, prev, sides, triangle_of};
 
 /// What it costs to see whether an edge wants to be flipped, in nanoseconds, about.
 const SIGHT: usize = 40;
@@ -14,12 +15,25 @@ impl Work<'_> {
     /// Flips edges whose opposite angles sum to more than π, in so many passes at most.
     pub(super) fn flip(&mut self, passes: usize) -> Result<(), RemeshError> {
         let mut open = std::mem::take(&mut self.open);
+        let [mut blunt, other] = std::mem::take(&mut self.sets);
         open.clear();
-        for h in 0..self.mesh.slots() {
-            self.pulse.beat(IDLE)?;
+        blunt.clear(self.mesh.slots());
+        for triangle in 0..self.mesh.triangle_slots() {
+            self.pulse.beat(3 * IDLE)?;
+            self.find_blunt(triangle, &mut blunt);
+        }
+        let mut next = 0;
+        while let Some(h) = blunt.from(next) {
+            self.pulse.beat(SIGHT)?;
+            next = h + 1;
             if self.mesh.is_edge(h) {
-                self.pulse.beat(SIGHT)?;
-                self.try_flip(h, &mut open);
+                let t = self.mesh.twin(h);
+                if self.try_flip(h, &mut open) {
+                    // The five edges are others' sides now.
+                    for side in [h, t].into_iter().flat_map(|side| sides(triangle_of(side))) {
+                        blunt.insert(side.min(self.mesh.twin(side)));
+                    }
+                }
             }
         }
         // From then on only edges beside flipped ones.
@@ -31,17 +45,40 @@ impl Work<'_> {
             }
             (from, to) = (to, open.len());
         }
-        self.open = open;
+        (self.open, self.sets) = (open, [blunt, other]);
         Ok(())
     }
 
-    fn try_flip(&mut self, h: u32, beside: &mut Vec<u32>) {
-        if !self.mesh.is_marked(h) && self.wants_flip(h) && self.mesh.can_flip(h) {
+    /// Notes the edges across a triangle's angles of more than π/2: of two angles that sum to more than π, one is.
+    fn find_blunt(&self, triangle: u32, blunt: &mut Set) {
+        let first = sides(triangle)[0];
+        if !self.mesh.has(first) {
+            return;
+        }
+        let [a, b, c] = self.mesh.corners(triangle);
+        let (p, q, r) = (self.mesh.point(a), self.mesh.point(b), self.mesh.point(c));
+        let (u, w, t) = (q - p, r - q, p - r);
+        // The cosine is that of the angle between one side and the other turned round. What is no number is looked at.
+        let is_acute = [u.dot(t) <= 0.0, w.dot(u) <= 0.0, t.dot(w) <= 0.0];
+        if is_acute != [true; 3] {
+            for (corner, is_acute) in (first..).zip(is_acute) {
+                if !is_acute {
+                    let across = next(corner);
+                    blunt.insert(across.min(self.mesh.twin(across)));
+                }
+            }
+        }
+    }
+
+    fn try_flip(&mut self, h: u32, beside: &mut Vec<u32>) -> bool {
+        let flips = !self.mesh.is_marked(h) && self.wants_flip(h) && self.mesh.can_flip(h);
+        if flips {
             let t = self.mesh.twin(h);
             self.mesh.flip(h);
             // The edges around: h, t and what follows the new diagonal in each of its triangles but it.
             beside.extend([h, t, prev(h), prev(t)]);
         }
+        flips
     }
 
     fn wants_flip(&self, h: u32) -> bool {

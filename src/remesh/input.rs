@@ -8,7 +8,12 @@ use std::ops::Range;
 
 use super::RemeshError;
 use crate::{
-    mesh::{Mesh, by_vertex::ByVertex, halfedge::HalfEdges, vector::V3},
+    mesh::{
+        Mesh,
+        by_vertex::ByVertex,
+        halfedge::{HalfEdges, sides, triangle_of},
+        vector::V3,
+    },
     watch::{Pulse, Stopped},
 };
 
@@ -37,28 +42,36 @@ pub(super) fn take(mesh: &Mesh, pulse: &Pulse) -> Result<Input, RemeshError> {
     }
     pulse.beat(10 * triangles.len())?;
     let mut mates = mates(&points, &triangles, pulse)?;
-    orient(&points, &mut triangles, &mut mates, pulse)?;
     let faces = triangles.len() as u32;
-    let ghosts = close(&points, &mut triangles, &mates, pulse)?;
-    let mut all = points;
-    all.resize(ghosts.end as usize, V3::default());
-    let degrees = degrees(all.len(), &triangles, pulse)?;
-    // Every edge has its two sides by now.
-    let Some(mut mesh) = HalfEdges::new(all, &triangles, pulse)? else { return Err(RemeshError::NoArea) };
+    let (mut mesh, ghosts) = if is_oriented_and_closed(&triangles, &mates, pulse)? {
+        let ghosts = points.len() as u32..points.len() as u32;
+        (HalfEdges::of_twins(points, &triangles, &mates, pulse)?, ghosts)
+    } else {
+        orient(&points, &mut triangles, &mut mates, pulse)?;
+        let ghosts = close(&points, &mut triangles, &mates, pulse)?;
+        let mut all = points;
+        all.resize(ghosts.end as usize, V3::default());
+        // Every edge has its two sides by now.
+        let Some(mesh) = HalfEdges::new(all, &triangles, pulse)? else { return Err(RemeshError::NoArea) };
+        (mesh, ghosts)
+    };
+    let degrees = degrees(ghosts.end as usize, &triangles, pulse)?;
     for a in (0..mesh.vertex_slots()).filter(|&a| mesh.has_vertex(a)) {
         pulse.beat(30)?;
         if mesh.degree(a) != degrees[a as usize] as usize {
             return Err(RemeshError::Vertex { at: mesh.point(a).into() });
         }
     }
-    for h in 0..mesh.slots() {
-        let t = mesh.twin(h);
-        pulse.beat(8)?;
-        if mesh.apex(h) == mesh.apex(t) {
-            return Err(RemeshError::Doubled { at: mesh.point(mesh.start(h)).into() });
-        }
-        if (h < 3 * faces) != (t < 3 * faces) {
-            mesh.mark(h, true);
+    for triangle in 0..mesh.triangle_slots() {
+        pulse.beat(24)?;
+        for h in sides(triangle) {
+            let t = mesh.twin(h);
+            if mesh.apex(h) == mesh.apex(t) {
+                return Err(RemeshError::Doubled { at: mesh.point(mesh.start(h)).into() });
+            }
+            if (triangle < faces) != (triangle_of(t) < faces) {
+                mesh.mark(h, true);
+            }
         }
     }
     Ok(Input { mesh, faces, ghosts })
@@ -112,6 +125,17 @@ fn mates(points: &[V3], triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32
         }
     }
     Ok(mates)
+}
+
+/// Whether each half-edge has a mate that goes back.
+fn is_oriented_and_closed(triangles: &[[u32; 3]], mates: &[u32], pulse: &Pulse) -> Result<bool, Stopped> {
+    for (h, &mate) in (0..).zip(mates) {
+        pulse.beat(5)?;
+        if mate == NONE || ends(triangles, h).0 == ends(triangles, mate).0 {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Turns triangles round so that all of a component agree with its first. Of `mates`, only which are `NONE` holds

@@ -4,7 +4,10 @@ use super::{
     RemeshError,
     work::{IDLE, Kind, MOVE, Work, distance2},
 };
-use crate::{mesh::vector::V3, watch::Stopped};
+use crate::{
+    mesh::{halfedge::sides, vector::V3},
+    watch::Stopped,
+};
 
 /// Ways that are not worth going, in squares of the length aimed at.
 const STILL: f64 = 4e-4;
@@ -23,11 +26,13 @@ impl Work<'_> {
         };
         let weights: Vec<f64> = (0..self.mesh.vertex_slots()).map(weight).collect();
         self.pulse.beat(5 * weights.len())?;
+        let mut ring = std::mem::take(&mut self.rings[0]);
         for a in 0..self.mesh.vertex_slots() {
             self.pulse.beat(MOVE)?;
             if !self.mesh.has_vertex(a) || self.is_ghost(a) {
                 continue;
             }
+            self.mesh.ring(a, &mut ring);
             let spot = match self.kinds[a as usize] {
                 Kind::Corner => continue,
                 Kind::Crease => {
@@ -35,20 +40,21 @@ impl Work<'_> {
                     self.surface.nearest_on_crease(middle, self.sides[a as usize])
                 }
                 Kind::Free => {
-                    let middle = self.middle(a, &weights);
+                    let middle = self.middle(a, &ring, &weights);
                     if distance2(middle, self.mesh.point(a)) < STILL * self.size(a) * self.size(a) {
                         continue;
                     }
                     self.surface.nearest(middle, self.sides[a as usize])
                 }
             };
-            if self.may_move(a, spot.at, spot.normal) {
+            if self.may_move(a, &ring, spot.at, spot.normal) {
                 self.mesh.points[a as usize] = spot.at;
                 self.sides[a as usize] = spot.side;
                 self.normals[a as usize] = spot.normal;
                 self.limits[a as usize] = spot.limit;
             }
         }
+        self.rings[0] = ring;
         Ok(())
     }
 
@@ -87,10 +93,10 @@ impl Work<'_> {
     fn shifts(&self) -> Result<Vec<V3>, Stopped> {
         let slots = self.mesh.vertex_slots() as usize;
         let (mut gaps, mut weights) = (vec![0.0; slots], vec![0.0; slots]);
-        for h in (0..self.mesh.slots()).step_by(3) {
+        for triangle in 0..self.mesh.triangle_slots() {
             self.pulse.beat(IDLE)?;
-            let corners = [h, h + 1, h + 2].map(|side| self.mesh.start(side));
-            if !self.mesh.has(h) || corners.iter().any(|&a| self.is_ghost(a)) {
+            let corners = self.mesh.corners(triangle);
+            if !self.mesh.has(sides(triangle)[0]) || corners.iter().any(|&a| self.is_ghost(a)) {
                 continue;
             }
             let [p, q, r] = corners.map(|a| self.mesh.point(a));
@@ -98,8 +104,8 @@ impl Work<'_> {
             let normal = (q - p).cross(r - p);
             let area = normal.norm();
             let centre = (p + q + r) * (1.0 / 3.0);
-            let spot = self.surface.nearest(centre, self.sides[corners[0] as usize]);
-            let gap = (spot.at - centre).dot(normal.unit());
+            let (at, _) = self.surface.nearest_point(centre, self.sides[corners[0] as usize]);
+            let gap = (at - centre).dot(normal.unit());
             for a in corners {
                 gaps[a as usize] += gap * area;
                 weights[a as usize] += area;
@@ -114,19 +120,22 @@ impl Work<'_> {
         Ok((0..slots).map(shift).collect())
     }
 
-    /// The centre of mass of the triangles around a free vertex, in its tangent plane.
-    fn middle(&self, a: u32, weights: &[f64]) -> V3 {
+    /// The centre of mass of the triangles around a free vertex with these neighbours, in its tangent plane.
+    fn middle(&self, a: u32, ring: &[u32], weights: &[f64]) -> V3 {
         let here = self.mesh.point(a);
         let (mut sum, mut weight, mut normal) = (V3::default(), 0.0, V3::default());
-        for h in self.mesh.around(a) {
-            let (u, w) = (self.mesh.point(self.mesh.end(h)) - here, self.mesh.point(self.mesh.apex(h)) - here);
+        let Some(&first) = ring.first() else { return here };
+        let own = weights[a as usize];
+        let (mut u, mut dense) = (self.mesh.point(first) - here, weights[first as usize]);
+        for &y in ring[1..].iter().chain([&first]) {
+            let (w, denser) = (self.mesh.point(y) - here, weights[y as usize]);
             let cross = u.cross(w);
             // Centroidal cells have sizes s where the density is s⁻⁴.
-            let dense = weights[a as usize] + weights[self.mesh.end(h) as usize] + weights[self.mesh.apex(h) as usize];
-            let area = cross.norm() * dense;
+            let area = cross.norm() * (own + dense + denser);
             sum = sum + (u + w) * area;
             weight += area;
             normal = normal + cross;
+            (u, dense) = (w, denser);
         }
         if weight <= 0.0 {
             return here;

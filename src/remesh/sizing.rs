@@ -10,7 +10,7 @@
 use super::surface::Surface;
 use crate::{
     mesh::{
-        halfedge::next,
+        halfedge::{next, sides, triangle_of},
         vector::{V3, v},
     },
     watch::{Pulse, Stopped},
@@ -46,17 +46,17 @@ const MOST: usize = 96;
 /// When the watch cancels.
 pub(super) fn find(surface: &Surface, length: f64, pulse: &Pulse) -> Result<Vec<f64>, Stopped> {
     let mesh = &surface.mesh;
-    let mut disc = Disc::new(surface, pulse)?;
+    let mut disc = Disc::new(surface);
     let none = FREE * length;
     let mut limits = vec![f64::INFINITY; mesh.vertex_slots() as usize];
     for a in 0..mesh.vertex_slots() {
         pulse.beat(50)?;
-        // Edges of creases lie along them.
-        if !mesh.has_vertex(a) || mesh.around(a).any(|h| mesh.is_marked(h) || !surface.is_real(h)) {
-            continue;
-        }
+        // Edges of creases lie along them, and beside flat places it is flat.
         let is_flat = |b: u32| (FLAT * length..=none).contains(&limits[b as usize]);
-        if mesh.around(a).any(|h| is_flat(mesh.end(h)) && mesh.length(h) < 0.5 * length) {
+        let is_known = |h: u32| {
+            mesh.is_marked(h) || !surface.is_real(h) || (is_flat(mesh.end(h)) && mesh.length(h) < 0.5 * length)
+        };
+        if !mesh.has_vertex(a) || mesh.around(a).any(is_known) {
             continue;
         }
         pulse.beat(1000)?;
@@ -111,8 +111,6 @@ fn grade(surface: &Surface, limits: &mut [f64], none: f64, pulse: &Pulse) -> Res
 /// The surface around one vertex after the other.
 struct Disc<'a> {
     surface: &'a Surface,
-    /// Normals, as long as the triangles' areas, and these.
-    faces: Vec<(V3, f64)>,
     /// For which vertex a triangle was last met.
     met: Vec<u32>,
     turn: u32,
@@ -120,15 +118,8 @@ struct Disc<'a> {
 }
 
 impl<'a> Disc<'a> {
-    fn new(surface: &'a Surface, pulse: &Pulse) -> Result<Self, Stopped> {
-        let count = surface.face_count();
-        let mut faces = Vec::with_capacity(count as usize);
-        for face in 0..count {
-            let normal = surface.face_normal(face) * 0.5;
-            faces.push((normal, normal.norm()));
-            pulse.beat(20)?;
-        }
-        Ok(Self { surface, faces, met: vec![0; count as usize], turn: 0, open: Vec::new() })
+    fn new(surface: &'a Surface) -> Self {
+        Self { surface, met: vec![0; surface.face_count() as usize], turn: 0, open: Vec::new() }
     }
 
     /// The share of the area within `radius` of the vertex that is gone when the vertex stands for all of it, and
@@ -139,20 +130,20 @@ impl<'a> Disc<'a> {
         self.turn += 1;
         self.open.clear();
         let mut sum = Sum::default();
+        let towards = |b: u32| (mesh.point(b) - here).unit();
+        let mut u = towards(mesh.end(mesh.side_from(a)));
         for h in mesh.around(a) {
-            let face = h / 3;
-            self.met[face as usize] = self.turn;
-            let (normal, area) = self.faces[face as usize];
             // Of a large triangle, its sector of the disc.
-            let (u, w) = ((mesh.point(mesh.end(h)) - here).unit(), (mesh.point(mesh.apex(h)) - here).unit());
-            let share = (0.5 * radius2 * (u - w).norm() / area.max(f64::MIN_POSITIVE)).min(1.0);
-            sum.add(normal, area, share);
-            self.open.push(mesh.twin(next(h)));
+            let (face, w) = (triangle_of(h), towards(mesh.apex(h)));
+            self.met[face as usize] = self.turn;
+            sum.add(self.surface.span(face), 0.5 * radius2 * (u - w).norm());
+            self.go_on(next(h));
+            u = w;
         }
         let mut seen = 0;
         while let Some(h) = self.open.pop() {
-            let face = h / 3;
-            if mesh.is_marked(h) || !self.surface.is_real(h) || self.met[face as usize] == self.turn || seen == MOST {
+            let face = triangle_of(h);
+            if self.met[face as usize] == self.turn {
                 continue;
             }
             self.met[face as usize] = self.turn;
@@ -162,18 +153,28 @@ impl<'a> Disc<'a> {
             if off.dot(off) >= BEYOND * radius2 {
                 continue;
             }
+            sum.add(self.surface.span(face), 0.5 * radius2);
             seen += 1;
-            let (normal, area) = self.faces[face as usize];
-            let share = (0.5 * radius2 / area.max(f64::MIN_POSITIVE)).min(1.0);
-            sum.add(normal, area, share);
-            let first = 3 * face;
-            for side in first..first + 3 {
+            if seen == MOST {
+                break;
+            }
+            for side in sides(face) {
                 if side != h {
-                    self.open.push(mesh.twin(side));
+                    self.go_on(side);
                 }
             }
         }
         sum.loss()
+    }
+
+    /// Notes the triangle across a side as one to be looked at.
+    fn go_on(&mut self, side: u32) {
+        let mesh = &self.surface.mesh;
+        let t = mesh.twin(side);
+        let face = triangle_of(t) as usize;
+        if self.met.get(face).is_some_and(|&turn| turn != self.turn) && !mesh.is_marked(side) {
+            self.open.push(t);
+        }
     }
 }
 
@@ -188,8 +189,11 @@ struct Sum {
 }
 
 impl Sum {
-    fn add(&mut self, normal: V3, area: f64, share: f64) {
+    /// Adds a triangle as [`Surface::span`] tells of it, up to an area of `most`.
+    fn add(&mut self, (normal, span): (V3, f64), most: f64) {
+        let (normal, area) = (normal * 0.5, 0.5 * span);
         if area > 0.0 {
+            let share = if most >= area { 1.0 } else { most / area };
             let by = share / area;
             self.area += area * share;
             self.normal = self.normal + normal * share;

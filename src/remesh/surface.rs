@@ -3,8 +3,8 @@
 
 use crate::{
     mesh::{
-        halfedge::{HalfEdges, next},
-        vector::V3,
+        halfedge::{HalfEdges, next, prev, sides, triangle_of},
+        vector::{V3, greater},
     },
     watch::{Pulse, Stopped},
 };
@@ -17,6 +17,8 @@ pub(super) struct Surface {
     pub(super) mesh: HalfEdges,
     /// Triangles from here on belong to ghosts.
     faces: u32,
+    /// The normals of the triangles, as long as twice their areas, and these lengths.
+    spans: Vec<(V3, f64)>,
     /// Unit normals of the vertices; zero where there is none, which is on creases.
     normals: Vec<V3>,
     /// The vertices where creases meet, bend or end.
@@ -51,14 +53,16 @@ impl Surface {
     /// When the watch cancels.
     pub(super) fn new(mesh: HalfEdges, faces: u32, pulse: &Pulse) -> Result<Self, Stopped> {
         let count = mesh.vertex_slots() as usize;
-        let mut surface =
-            Self { mesh, faces, normals: Vec::new(), corners: vec![false; count], limits: vec![0.0; count] };
+        let mut spans = Vec::with_capacity(faces as usize);
         let mut normals = vec![V3::default(); count];
         for face in 0..faces {
-            let normal = surface.face_normal(face);
-            pulse.beat(20)?;
-            for h in 3 * face..3 * face + 3 {
-                let at = &mut normals[surface.mesh.start(h) as usize];
+            pulse.beat(30)?;
+            let [a, b, c] = mesh.corners(face);
+            let p = mesh.point(a);
+            let normal = (mesh.point(b) - p).cross(mesh.point(c) - p);
+            spans.push((normal, normal.norm()));
+            for a in [a, b, c] {
+                let at = &mut normals[a as usize];
                 *at = *at + normal;
             }
         }
@@ -66,16 +70,15 @@ impl Surface {
             *normal = normal.unit();
             pulse.beat(10)?;
         }
-        surface.normals = normals;
-        Ok(surface)
+        Ok(Self { mesh, faces, spans, normals, corners: vec![false; count], limits: vec![0.0; count] })
     }
 
     /// The sum of the triangles' areas.
     pub(super) fn area(&self, pulse: &Pulse) -> Result<f64, Stopped> {
         let mut sum = 0.0;
-        for face in 0..self.faces {
-            sum += 0.5 * self.face_normal(face).norm();
-            pulse.beat(15)?;
+        for (_, span) in &self.spans {
+            sum += 0.5 * span;
+            pulse.beat(4)?;
         }
         Ok(sum)
     }
@@ -83,21 +86,24 @@ impl Surface {
     /// A third of the area of the triangles around each vertex.
     pub(super) fn areas(&self, pulse: &Pulse) -> Result<Vec<f64>, Stopped> {
         let mut areas = vec![0.0; self.mesh.vertex_slots() as usize];
-        for face in 0..self.faces {
-            let share = self.face_normal(face).norm() / 6.0;
-            pulse.beat(20)?;
-            for h in 3 * face..3 * face + 3 {
-                areas[self.mesh.start(h) as usize] += share;
+        for (face, (_, span)) in (0..).zip(&self.spans) {
+            let share = span / 6.0;
+            pulse.beat(10)?;
+            for a in self.mesh.corners(face) {
+                areas[a as usize] += share;
             }
         }
         Ok(areas)
     }
 
+    /// The normal of a triangle, as long as twice its area, and this length.
+    pub(super) fn span(&self, face: u32) -> (V3, f64) {
+        self.spans[face as usize]
+    }
+
     /// The normal of a triangle, as long as twice its area.
     pub(super) fn face_normal(&self, face: u32) -> V3 {
-        let [a, b, c] = self.mesh.corners(3 * face);
-        let p = self.mesh.point(a);
-        (self.mesh.point(b) - p).cross(self.mesh.point(c) - p)
+        self.span(face).0
     }
 
     pub(super) fn face_count(&self) -> u32 {
@@ -124,7 +130,7 @@ impl Surface {
             return normal;
         }
         let real = self.mesh.around(a).filter(|&h| self.is_real(h));
-        real.fold(V3::default(), |sum, h| sum + self.face_normal(h / 3)).unit() * FAINT
+        real.fold(V3::default(), |sum, h| sum + self.face_normal(triangle_of(h))).unit() * FAINT
     }
 
     /// Takes over the marks of the mesh as creases.
@@ -140,7 +146,7 @@ impl Surface {
     }
 
     pub(super) fn is_real(&self, h: u32) -> bool {
-        h < 3 * self.faces
+        triangle_of(h) < self.faces
     }
 
     /// The half-edge, or its twin where that one is a ghost's.
@@ -155,44 +161,77 @@ impl Surface {
 
     /// The point of the surface nearest to `p` among those that a descent from the triangle of `side` reaches.
     pub(super) fn nearest(&self, p: V3, side: u32) -> Spot {
-        let mut face = side / 3;
-        let mut near = self.near(face, p);
+        let (face, Near { at, share, .. }) = self.descend(p, side);
+        let [x, y, z] = share;
+        let [a, b, c] = self.mesh.corners(face);
+        let limit = self.limit(a) * x + self.limit(b) * y + self.limit(c) * z;
+        Spot { side: sides(face)[0], at, normal: self.normal_in(face, share), limit }
+    }
+
+    /// The point of [`Surface::nearest`] and its triangle alone.
+    pub(super) fn nearest_point(&self, p: V3, side: u32) -> (V3, u32) {
+        let (face, near) = self.descend(p, side);
+        (near.at, face)
+    }
+
+    /// The triangle that a descent from that of `side` ends in, and its point nearest to `p`.
+    fn descend(&self, p: V3, side: u32) -> (u32, Near) {
+        const NONE: u32 = u32::MAX;
+        // The triangle with the nearest point yet, and the one that had it before.
+        let (mut face, mut before) = (NONE, NONE);
+        let mut near = Near { at: p, share: [0.0; 3], distance2: f64::INFINITY };
+        // What to look at: the triangle of `h`, or all around its start.
+        let (mut h, mut around) = (side, false);
         loop {
-            let mut better = None;
-            let mut limit = near.distance2 * (1.0 - 1e-9);
-            let mut look = |h: u32| {
-                if self.is_real(h) {
-                    let other = self.near(h / 3, p);
-                    if other.distance2 < limit {
-                        limit = other.distance2;
-                        better = Some((h / 3, other));
+            let (first, corner) = (h, near.at);
+            let lead = |b: u32| (self.mesh.point(b) - corner).dot(p - corner);
+            let mut along = if around { lead(self.mesh.end(h)) } else { 0.0 };
+            let (mut better, mut limit) = (NONE, near.distance2 * (1.0 - 1e-9));
+            loop {
+                let other = triangle_of(h);
+                // Those that are not nearer for sure: where both sides at the corner lead away from `p`, the one that
+                // it is in, and the one that it came from.
+                let mut is_out = other >= self.faces || other == face || other == before;
+                if around {
+                    let on = lead(self.mesh.apex(h));
+                    is_out |= along <= 0.0 && on <= 0.0;
+                    along = on;
+                }
+                if !is_out || face == NONE {
+                    let it = self.near(other, p);
+                    if it.distance2 < limit || face == NONE {
+                        (better, limit, near) = (other, it.distance2, it);
                     }
                 }
-            };
-            // Only triangles at the nearest point can be nearer.
-            match near.share {
-                [x, y, z] if x > 0.0 && y > 0.0 && z > 0.0 => {}
-                [_, 0.0, 0.0] => self.mesh.around(self.mesh.start(3 * face)).for_each(&mut look),
-                [0.0, _, 0.0] => self.mesh.around(self.mesh.start(3 * face + 1)).for_each(&mut look),
-                [0.0, 0.0, _] => self.mesh.around(self.mesh.start(3 * face + 2)).for_each(&mut look),
-                [_, _, 0.0] => look(self.mesh.twin(3 * face)),
-                [0.0, _, _] => look(self.mesh.twin(3 * face + 1)),
-                _ => look(self.mesh.twin(3 * face + 2)),
+                h = self.mesh.twin(prev(h));
+                if !around || h == first {
+                    break;
+                }
             }
-            let Some(found) = better else { break };
-            (face, near) = found;
+            if better == NONE {
+                break;
+            }
+            (before, face) = (face, better);
+            // Only triangles at the nearest point can be nearer: that across a side, or those around a corner.
+            let [a, b, c] = sides(face);
+            (h, around) = match near.share {
+                [x, y, z] if x > 0.0 && y > 0.0 && z > 0.0 => break,
+                [_, 0.0, 0.0] => (self.mesh.side_from(self.mesh.start(a)), true),
+                [0.0, _, 0.0] => (self.mesh.side_from(self.mesh.start(b)), true),
+                [0.0, 0.0, _] => (self.mesh.side_from(self.mesh.start(c)), true),
+                [_, _, 0.0] => (self.mesh.twin(a), false),
+                [0.0, _, _] => (self.mesh.twin(b), false),
+                _ => (self.mesh.twin(c), false),
+            };
         }
-        let [x, y, z] = near.share;
-        let [a, b, c] = self.mesh.corners(3 * face);
-        let limit = self.limit(a) * x + self.limit(b) * y + self.limit(c) * z;
-        Spot { side: 3 * face, at: near.at, normal: self.normal_in(face, near.share), limit }
+        (face, near)
     }
 
     /// The normal within a triangle: between those of its corners; a corner on a crease has the triangle's own.
     fn normal_in(&self, face: u32, share: [f64; 3]) -> V3 {
         let (mut sum, mut creased) = (V3::default(), 0.0);
-        for (h, share) in (3 * face..).zip(share) {
-            let normal = self.normals[self.mesh.start(h) as usize];
+        for (a, share) in self.mesh.corners(face).into_iter().zip(share) {
+            let normal = self.normals[a as usize];
             if normal == V3::default() {
                 creased += share;
             } else {
@@ -208,7 +247,7 @@ impl Surface {
     /// The nearest point of a triangle (Ericson, *Real-Time Collision Detection*, 5.1.5). Of a triangle without an
     /// area, one of its sides.
     fn near(&self, face: u32, p: V3) -> Near {
-        let [a, b, c] = self.mesh.corners(3 * face);
+        let [a, b, c] = self.mesh.corners(face);
         let corners = [self.mesh.point(a), self.mesh.point(b), self.mesh.point(c)];
         let (share, at) = nearest_of_triangle(p, corners);
         let off = p - at;
@@ -243,7 +282,7 @@ impl Surface {
             (h, t, at, distance2) = (further, t2, at2, further2);
         }
         let normals = [h, self.mesh.twin(h)]
-            .map(|side| if self.is_real(side) { self.face_normal(side / 3).unit() } else { V3::default() });
+            .map(|side| if self.is_real(side) { self.face_normal(triangle_of(side)).unit() } else { V3::default() });
         let [one, two] = [self.mesh.start(h), self.mesh.end(h)].map(|a| self.limit(a));
         Spot { side: self.real(h), at, normal: (normals[0] + normals[1]).unit() * FAINT, limit: one + (two - one) * t }
     }
@@ -269,6 +308,8 @@ impl Surface {
 }
 
 /// The barycentric coordinates and the place of the point of a triangle that is nearest to `p`.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "half of its time goes into passing corners and result through memory")]
 pub(super) fn nearest_of_triangle(p: V3, [a, b, c]: [V3; 3]) -> ([f64; 3], V3) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));
@@ -282,7 +323,7 @@ pub(super) fn nearest_of_triangle(p: V3, [a, b, c]: [V3; 3]) -> ([f64; 3], V3) {
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let t = d1 / (d1 - d3).max(f64::MIN_POSITIVE);
+        let t = d1 / greater(d1 - d3, f64::MIN_POSITIVE);
         return ([1.0 - t, t, 0.0], a + ab * t);
     }
     let cp = p - c;
@@ -292,12 +333,12 @@ pub(super) fn nearest_of_triangle(p: V3, [a, b, c]: [V3; 3]) -> ([f64; 3], V3) {
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let t = d2 / (d2 - d6).max(f64::MIN_POSITIVE);
+        let t = d2 / greater(d2 - d6, f64::MIN_POSITIVE);
         return ([1.0 - t, 0.0, t], a + ac * t);
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let t = (d4 - d3) / (d4 - d3 + d5 - d6).max(f64::MIN_POSITIVE);
+        let t = (d4 - d3) / greater(d4 - d3 + d5 - d6, f64::MIN_POSITIVE);
         return ([0.0, 1.0 - t, t], b + (c - b) * t);
     }
     let scale = 1.0 / (va + vb + vc);

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::{RemeshError, shape::SLIVER, surface::Surface};
+use super::{RemeshError, set::Set, shape::SLIVER, surface::Surface};
 use crate::{
     mesh::{
-        halfedge::{AREA_PER_VERTEX, HalfEdges},
-        vector::V3,
+        halfedge::{AREA_PER_VERTEX, HalfEdges, sides},
+        vector::{V3, greater, lesser},
     },
     watch::{Pulse, Stopped, Watch},
 };
@@ -63,8 +63,10 @@ pub(super) struct Work<'a> {
     areas: Vec<f64>,
     /// Whether creases and the shape of triangles are given up for the count.
     pub(super) loose: bool,
-    /// Edges to be looked at, for reuse.
+    /// For reuse: edges to be looked at, those and triangles to be looked at in their order, neighbours.
     pub(super) open: Vec<u32>,
+    pub(super) sets: [Set; 2],
+    pub(super) rings: [Vec<u32>; 2],
     pub(super) pulse: &'a Pulse<'a>,
 }
 
@@ -85,7 +87,7 @@ impl<'a> Work<'a> {
         let mut kinds = Vec::with_capacity(slots as usize);
         let mut sides = Vec::with_capacity(slots as usize);
         let mut normals = Vec::with_capacity(slots as usize);
-        pulse.beat(5 * surface.mesh.slots() as usize)?;
+        pulse.beat(15 * surface.mesh.triangle_slots() as usize)?;
         for a in 0..slots {
             pulse.beat(60)?;
             let crease = mesh.has_vertex(a).then(|| surface.creases_at(a).next()).flatten();
@@ -112,6 +114,8 @@ impl<'a> Work<'a> {
             areas: surface.areas(pulse)?,
             loose: false,
             open: Vec::new(),
+            sets: Default::default(),
+            rings: Default::default(),
             pulse,
         })
     }
@@ -182,7 +186,7 @@ impl<'a> Work<'a> {
 
     /// The length aimed at where `limit` is the greatest.
     pub(super) fn within(&self, limit: f64) -> f64 {
-        limit.max(self.least).min(self.length)
+        lesser(greater(limit, self.least), self.length)
     }
 
     /// The length of edge aimed at around a vertex.
@@ -198,6 +202,30 @@ impl<'a> Work<'a> {
     /// The square of the length aimed at for an edge.
     pub(super) fn aim2(&self, h: u32) -> f64 {
         self.size(self.mesh.start(h)) * self.size(self.mesh.end(h))
+    }
+
+    /// Whether a corner of the triangle is a ghost.
+    pub(super) fn has_ghost(&self, triangle: u32) -> bool {
+        !self.ghosts.is_empty() && self.mesh.corners(triangle).into_iter().any(|a| self.is_ghost(a))
+    }
+
+    /// The squares of the lengths of a triangle's sides, and of the lengths aimed at for them.
+    #[inline]
+    pub(super) fn lengths2(&self, triangle: u32) -> ([f64; 3], [f64; 3]) {
+        let [a, b, c] = self.mesh.corners(triangle);
+        let (p, q, r) = (self.mesh.point(a), self.mesh.point(b), self.mesh.point(c));
+        let (x, y, z) = (self.size(a), self.size(b), self.size(c));
+        ([distance2(p, q), distance2(q, r), distance2(r, p)], [x * y, y * z, z * x])
+    }
+
+    /// Whether a triangle has a side that is its edge's, no ghost's maybe, and of such a length.
+    fn any_side(&self, triangle: u32, is_such: impl Fn(f64, f64) -> bool) -> bool {
+        if !self.mesh.has(sides(triangle)[0]) {
+            return false;
+        }
+        let ([l0, l1, l2], [a0, a1, a2]) = self.lengths2(triangle);
+        let [e0, e1, e2] = self.mesh.is_edges(triangle);
+        (e0 & is_such(l0, a0)) | (e1 & is_such(l1, a1)) | (e2 & is_such(l2, a2))
     }
 
     /// Chooses the usual length for `count` vertices. Where the short edges of thin parts would make it much longer,
@@ -222,7 +250,7 @@ impl<'a> Work<'a> {
         let surface = self.surface;
         let mut sum = 0.0;
         for (a, area) in (0..).zip(&self.areas) {
-            let size = surface.limit(a).max(self.least).min(length);
+            let size = lesser(greater(surface.limit(a), self.least), length);
             sum += area / (size * size);
             self.pulse.beat(5)?;
         }
@@ -231,10 +259,13 @@ impl<'a> Work<'a> {
 
     fn longest(&self) -> Result<f64, Stopped> {
         let mut longest2 = 0.0_f64;
-        for h in 0..self.mesh.slots() {
-            self.pulse.beat(IDLE)?;
-            if self.is_edge(h) {
-                longest2 = longest2.max(self.stretch2(h));
+        for triangle in 0..self.mesh.triangle_slots() {
+            self.pulse.beat(3 * IDLE)?;
+            if self.mesh.has(sides(triangle)[0]) && !self.has_ghost(triangle) {
+                let (lengths2, aims2) = self.lengths2(triangle);
+                for (length2, aim2) in lengths2.into_iter().zip(aims2) {
+                    longest2 = greater(longest2, length2 / aim2);
+                }
             }
         }
         Ok(longest2.sqrt())
@@ -246,11 +277,16 @@ impl<'a> Work<'a> {
         // A few more than an even mesh of such edges has: where the surface is folded, edges may grow by splits.
         let most = self.count() + (2.0 * self.need(self.length)? / longest2) as usize;
         // A split moves edges to new slots at the end: they are not looked at until the next pass.
-        for h in 0..self.mesh.slots() {
-            self.pulse.beat(IDLE)?;
-            if self.is_edge(h) && self.length2(h) > longest2 * self.aim2(h) && self.count() < most {
-                self.pulse.beat(MOVE)?;
-                self.try_split(h);
+        for triangle in 0..self.mesh.triangle_slots() {
+            self.pulse.beat(3 * IDLE)?;
+            if !self.any_side(triangle, |length2, aim2| length2 > longest2 * aim2) {
+                continue;
+            }
+            for h in sides(triangle) {
+                if self.is_edge(h) && self.length2(h) > longest2 * self.aim2(h) && self.count() < most {
+                    self.pulse.beat(MOVE)?;
+                    self.try_split(h);
+                }
             }
         }
         Ok(())
@@ -259,11 +295,16 @@ impl<'a> Work<'a> {
     /// Collapses edges that are too short.
     fn collapse(&mut self) -> Result<(), RemeshError> {
         let shortest2 = SHORT * SHORT;
-        for h in 0..self.mesh.slots() {
-            self.pulse.beat(IDLE)?;
-            if self.is_edge(h) && self.length2(h) < shortest2 * self.aim2(h) {
-                self.pulse.beat(MOVE)?;
-                self.try_collapse(h, LONG, SLIVER);
+        for triangle in 0..self.mesh.triangle_slots() {
+            self.pulse.beat(3 * IDLE)?;
+            if !self.any_side(triangle, |length2, aim2| length2 < shortest2 * aim2) {
+                continue;
+            }
+            for h in sides(triangle) {
+                if self.is_edge(h) && self.length2(h) < shortest2 * self.aim2(h) {
+                    self.pulse.beat(MOVE)?;
+                    self.try_collapse(h, LONG, SLIVER);
+                }
             }
         }
         Ok(())

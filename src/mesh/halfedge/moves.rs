@@ -1,16 +1,16 @@
 //! The three moves on an edge, and when the surface stays a manifold: split, flip and collapse.
 
-use super::{GONE, HalfEdges, next, prev};
+use super::{GONE, HalfEdges, Triangle, next, prev};
 use crate::mesh::vector::V3;
 
 impl HalfEdges {
     /// Makes two half-edges one edge, which is marked if one of them was.
     fn join(&mut self, h: u32, t: u32) {
-        self.twin[h as usize] = t;
-        self.twin[t as usize] = h;
-        let marked = self.marked[h as usize] || self.marked[t as usize];
-        self.marked[h as usize] = marked;
-        self.marked[t as usize] = marked;
+        *self.twin_mut(h) = t;
+        *self.twin_mut(t) = h;
+        if self.is_marked(h) || self.is_marked(t) {
+            self.mark(h, true);
+        }
     }
 
     /// Puts a vertex at `at` on the edge of `h`, and gives its index.
@@ -24,16 +24,16 @@ impl HalfEdges {
         let (beyond_bc, beyond_ad) = (self.twin(bc), self.twin(ad));
         // h's triangle (a b c) becomes (a m c) and a new (m b c); t's (b a d) becomes (b m d) and a new (m a d).
         let a = self.start(h);
-        let f = self.start.len() as u32;
-        let g = f + 3;
-        self.start.extend([m, b, c, m, a, d]);
-        self.twin.extend([GONE; 6]);
-        self.marked.extend([false; 6]);
-        self.start[next(h) as usize] = m;
-        self.start[next(t) as usize] = m;
+        let f = self.slots();
+        let g = f + 4;
+        self.triangles.push(Triangle { start: [m, b, c, GONE], twin: [GONE, GONE, GONE, 0] });
+        self.triangles.push(Triangle { start: [m, a, d, GONE], twin: [GONE, GONE, GONE, 0] });
+        *self.start_mut(next(h)) = m;
+        *self.start_mut(next(t)) = m;
         // The marks of what was (b c) and (a d) move out with the edges.
         for (inner, outer) in [(bc, f + 1), (ad, g + 1)] {
-            self.marked[outer as usize] = std::mem::take(&mut self.marked[inner as usize]);
+            self.mark_side(outer, self.is_marked(inner));
+            self.mark_side(inner, false);
         }
         self.join(h, g);
         self.join(t, f);
@@ -67,10 +67,10 @@ impl HalfEdges {
         let (a, b, c, d) = (self.start(h), self.start(t), self.start(ca), self.start(db));
         let (beyond_bc, beyond_ad) = (self.twin(bc), self.twin(ad));
         // (a b c), (b a d) → (a d c), (b c d).
-        self.start[bc as usize] = d;
-        self.start[ad as usize] = c;
-        self.marked[bc as usize] = false;
-        self.marked[ad as usize] = false;
+        *self.start_mut(bc) = d;
+        *self.start_mut(ad) = c;
+        self.mark_side(bc, false);
+        self.mark_side(ad, false);
         self.join(h, beyond_ad);
         self.join(t, beyond_bc);
         self.join(bc, ad);
@@ -88,28 +88,26 @@ impl HalfEdges {
 
     /// The same with so many neighbours, at least 3.
     pub fn can_collapse_to(&self, h: u32, least: usize) -> bool {
-        let (a, b) = (self.start(h), self.end(h));
+        let [from, to] = [self.start(h), self.end(h)].map(|a| self.neighbours(a).collect::<Vec<u32>>());
+        self.can_collapse_rings(h, &from, &to, least)
+    }
+
+    /// The same where the neighbours of the edge's start and of its end are known.
+    pub fn can_collapse_rings(&self, h: u32, from: &[u32], to: &[u32], least: usize) -> bool {
         let (c, d) = (self.apex(h), self.apex(self.twin(h)));
         let more = |x: u32| self.around(x).nth(least).is_some();
-        if c == d || self.live <= 8 || !more(c) || !more(d) {
+        if c == d || self.live <= 8 || from.len() + to.len() < 4 + least || !more(c) || !more(d) {
             return false;
         }
         // Most vertices have fewer neighbours than this.
-        let (mut ring, mut seen) = ([GONE; 16], 0);
-        for x in self.neighbours(b) {
-            if let Some(slot) = ring.get_mut(seen) {
-                *slot = x;
-            }
-            seen += 1;
-        }
-        let is_beside_b =
-            |x: u32| if seen <= ring.len() { ring.contains(&x) } else { self.neighbours(b).any(|y| y == x) };
-        let (mut common, mut degree) = (0, 0);
-        for x in self.neighbours(a) {
-            common += usize::from(is_beside_b(x));
-            degree += 1;
-        }
-        common == 2 && degree + seen >= 4 + least
+        let mut few = [GONE; 16];
+        let common = if let Some(some) = few.get_mut(..to.len()) {
+            some.copy_from_slice(to);
+            from.iter().filter(|x| few.contains(x)).count()
+        } else {
+            from.iter().filter(|x| to.contains(x)).count()
+        };
+        common == 2
     }
 
     /// Makes the edge's start one with its end, which moves to `at`.
@@ -119,8 +117,8 @@ impl HalfEdges {
         let (c, d) = (self.apex(h), self.apex(t));
         let mut spoke = h;
         loop {
-            self.start[spoke as usize] = b;
-            spoke = self.twin[prev(spoke) as usize];
+            *self.start_mut(spoke) = b;
+            spoke = self.twin(prev(spoke));
             if spoke == h {
                 break;
             }
@@ -128,8 +126,8 @@ impl HalfEdges {
         let (bc, ca, ad, db) = (self.twin(next(h)), self.twin(prev(h)), self.twin(next(t)), self.twin(prev(t)));
         self.join(bc, ca);
         self.join(ad, db);
-        for gone in [h, next(h), prev(h), t, next(t), prev(t)] {
-            self.start[gone as usize] = GONE;
+        for gone in [h, t] {
+            *self.triangle_mut(gone) = Triangle { start: [GONE; 4], twin: [0; 4] };
         }
         // The way back from a is one from b by now.
         for (vertex, side) in [(b, ca), (c, bc), (d, ad)] {

@@ -50,24 +50,27 @@ fn between(mesh: &HalfEdges, a: u32, b: u32) -> u32 {
 fn defect(mesh: &HalfEdges, genus: i64) -> Option<String> {
     let slots = mesh.slots();
     let (mut half_edges, mut fans) = (0_i64, vec![0_usize; mesh.vertex_slots() as usize]);
-    for first in (0..slots).step_by(3) {
-        let sides = [first, first + 1, first + 2];
+    for triangle in 0..mesh.triangle_slots() {
+        let sides = sides(triangle);
         let here = sides.map(|h| mesh.has(h));
         if here == [false; 3] {
             continue;
         }
-        let [a, b, c] = mesh.corners(first);
+        let [a, b, c] = mesh.corners(triangle);
         if here != [true; 3] || a == b || b == c || c == a {
-            return Some(format!("face {}: {a} {b} {c}", first / 3));
+            return Some(format!("face {triangle}: {a} {b} {c}"));
         }
         for h in sides {
             let t = mesh.twin(h);
-            let turns = next(prev(h)) == h && prev(next(h)) == h && next(next(next(h))) == h && next(h) / 3 == h / 3;
+            let turns = next(prev(h)) == h
+                && prev(next(h)) == h
+                && next(next(next(h))) == h
+                && triangle_of(next(h)) == triangle;
             let names = mesh.end(h) == mesh.start(next(h)) && mesh.apex(h) == mesh.start(prev(h));
             if !turns || !names {
                 return Some(format!("half-edge {h}: next or previous"));
             }
-            if t >= slots || !mesh.has(t) || mesh.twin(t) != h || t / 3 == h / 3 {
+            if t >= slots || !mesh.has(t) || mesh.twin(t) != h || triangle_of(t) == triangle {
                 return Some(format!("half-edge {h}: twin {t}"));
             }
             if (mesh.start(t), mesh.end(t)) != (mesh.end(h), mesh.start(h)) || mesh.is_marked(h) != mesh.is_marked(t) {
@@ -228,11 +231,15 @@ fn marks_go_where_their_edges_go() {
     let mut mesh = ring();
     // The circle j = 0 around the hole.
     let circle = |a: u32| a.is_multiple_of(8);
-    for h in (0..mesh.slots()).filter(|&h| circle(mesh.start(h)) && circle(mesh.end(h))).collect::<Vec<_>>() {
+    for h in (0..mesh.triangle_slots())
+        .flat_map(sides)
+        .filter(|&h| circle(mesh.start(h)) && circle(mesh.end(h)))
+        .collect::<Vec<_>>()
+    {
         mesh.mark(h, true);
     }
     for _ in 0..3 {
-        for h in 0..mesh.slots() {
+        for h in (0..mesh.triangle_slots()).flat_map(sides) {
             let middle = mesh.point(mesh.start(h)).lerp(mesh.point(mesh.end(h)), 0.5);
             match h % 5 {
                 0 => _ = mesh.split(h, middle),

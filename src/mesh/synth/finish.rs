@@ -4,6 +4,7 @@ use super::polygonise::Surface;
 use super::random::Random;
 use super::remesh::{Remesher, SLIVER};
 use super::vector::angle_of;
+use crate::mesh::halfedge::sides;
 
 impl Remesher<'_> {
     /// Rids the mesh of the slivers that the rounds could not: their shortest edge is collapsed, or the longest
@@ -11,8 +12,7 @@ impl Remesher<'_> {
     pub(super) fn mend(&mut self) {
         for _ in 0..6 {
             let mut left = false;
-            for f in 0..self.mesh.slots() / 3 {
-                let sides = [3 * f, 3 * f + 1, 3 * f + 2];
+            for sides in (0..self.mesh.triangle_slots()).map(sides) {
                 if !self.mesh.has(sides[0]) || self.side_quality(sides[0]) > SLIVER {
                     continue;
                 }
