@@ -1,26 +1,23 @@
 //! Shift-invert block Lanczos.
 //!
 //! The operator (L − σB)⁻¹B is self-adjoint in the inner product of B; its eigenvalues are θ = 1/(λ − σ), so the λ
-//! nearest to σ on both sides come first. The basis is kept B-orthogonal in full, block against all earlier blocks,
-//! because what is lost there comes back as copies of eigenvalues (Grimes, Lewis and Simon 1994, § 4).
+//! nearest to σ on both sides come first. The basis is kept [orthogonal], because what is lost there comes back as
+//! copies of eigenvalues.
 
+use self::projected::{cholesky, product, projected};
 pub(super) use self::random::Random;
-use self::{
-    again::norm,
-    projected::{cholesky, product, projected},
-};
 use super::{
     block::{Combine, Dots, Multiply, Recur, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Normalise, Panel, PanelDots, PanelUpdate, panels},
+    panel::{Normalise, Panel, panels},
     pencil::{Pencil, Product},
     poll::{Poll, Stop},
     small::{eigen, identity},
     timings::Cost,
 };
 
-mod again;
+mod orthogonal;
 mod projected;
 mod random;
 
@@ -103,8 +100,14 @@ pub(super) struct Krylov<'a> {
     alpha: Vec<Square>,
     /// Blocks below the diagonal: `beta[j]` couples block j to block j + 1.
     beta: Vec<Square>,
-    /// For each step what orthogonalisation took out of the product: its components along the blocks.
+    /// For each step what orthogonalisation took out of the product: its components along the first blocks or all.
     lost: Vec<Vec<Square>>,
+    /// Whether the next step is made orthogonal to all blocks.
+    due: bool,
+    /// The largest norm of what the last step took out of a vector along all but the first blocks.
+    taken: f64,
+    /// By how much the projected operator is off: see [`leak`](Self::leak).
+    off: f64,
     /// For each vector of the first block by how much the solve was wrong: see [`accuracy`](Self::accuracy).
     wrong: [f64; WIDTH],
     /// Whether the products with S were those with a symmetric operator, as they are unless something is wrong.
@@ -142,6 +145,9 @@ impl<'a> Krylov<'a> {
             alpha: Vec::new(),
             beta: Vec::new(),
             lost: Vec::new(),
+            due: true,
+            taken: 0.0,
+            off: 0.0,
             wrong: [0.0; WIDTH],
             symmetric: true,
             random,
@@ -176,13 +182,12 @@ impl<'a> Krylov<'a> {
         }
         let alpha = self.recur();
         poll.charge(Cost::Orthogonalisation);
-        let mut lost = self.orthogonalise(blocks, Some(&alpha), poll)?;
+        let mut lost = self.orthogonalise(self.against(), Some(&alpha), poll)?;
         let mut beta = self.normalise(blocks, poll)?;
-        // Where more was taken out than is left, one pass in single precision leaves too much of it: the space is
-        // exhausted but for what hardly differs, as where some triangles are many orders smaller than the others.
-        if (0..WIDTH).any(|column| norm(&lost, column) > norm(&[beta], column)) {
+        if self.spoilt(&lost, &beta) {
             self.again(blocks, &mut lost, &mut beta, poll)?;
         }
+        self.note(&lost, &beta);
         self.lost.push(lost);
         self.beta.push(beta);
         self.keep();
@@ -254,39 +259,6 @@ impl<'a> Krylov<'a> {
         }
         self.alpha.push(alpha);
         alpha
-    }
-
-    /// Makes `work` B-orthogonal to the first so many blocks and to the locked vectors, and returns its components
-    /// along the blocks, without those along the newest one that are known already.
-    fn orthogonalise(&mut self, blocks: usize, known: Option<&Square>, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, images, exact, now, work, mass, room, .. } = &mut *self.scratch;
-        let mut sums = Vec::new();
-        match self.basis {
-            Basis::Single => {
-                let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
-                let images: Vec<&[Panel]> = images.iter().take(blocks).map(Vec::as_slice).collect();
-                let dual = if matches!(self.pencil.mass, Product::Unit) { &basis } else { &images };
-                let less = known.map(|alpha| (now.rows(), alpha));
-                dispatch(PanelDots { basis: dual, t: work.rows_mut(), less, room, sums: &mut sums });
-                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
-                let single: Vec<_> = sums.iter().map(|sum| sum.map(|row| row.map(|value| value as f32))).collect();
-                dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut() });
-                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
-            }
-            Basis::Double(locked) => {
-                let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
-                dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
-                poll.charge(Cost::Products);
-                sums.resize(all.len(), Square::default());
-                dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
-                poll.spend(work.rows().len() * all.len() * WIDTH)?;
-                dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
-                poll.spend(work.rows().len() * all.len() * WIDTH)?;
-                sums.truncate(blocks);
-            }
-        }
-        poll.charge(Cost::Orthogonalisation);
-        Ok(sums)
     }
 
     /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix. Q is to be the block `at` of the

@@ -26,8 +26,10 @@ pub(super) const TARGET: f64 = 54.0;
 const MOST: usize = 76;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 36;
-/// Blocks after which it looks at its Ritz values for the first time; as many as most processes need but one.
-const FIRST_LOOK: usize = 18;
+/// Blocks after which it looks at its Ritz values for the first time, as many as most processes need; and in the lowest
+/// process, which needs fewer, for nothing is beyond its left side.
+const FIRST_LOOK: usize = 22;
+const LOWEST_LOOK: usize = 18;
 
 /// With fewer rows a basis is kept in double precision. It may come to hold a good part of the space, and what is left
 /// of that is then so little that single precision does not know it from rounding.
@@ -290,7 +292,8 @@ impl Piece {
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
         let spacing = (left + right.unwrap_or(left)) / TARGET;
-        let mut look = FIRST_LOOK;
+        let lowest = sigma <= left;
+        let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK };
         for blocks in 1..=most {
             krylov.step(poll)?;
             if blocks != most && blocks != look {
