@@ -24,8 +24,8 @@
 //! - that of the factorisation and the solves. These solve a neighbouring problem, (L − σB + E) x = Bx. E shifts an
 //!   eigenvalue by xᵀEx, which is [measured](super::krylov::Krylov::accuracy) on the vectors of the first block and
 //!   taken [eightfold](SAFETY);
-//! - where the basis is in single precision, what this [leaves out](super::krylov::Krylov::leak), taken as it is: on
-//!   the long thin mesh where it is largest, the true error is a thousandth of it.
+//! - where the basis is in single precision and not quite orthogonal, what this
+//!   [leaves out](super::krylov::Krylov::leak), taken as it is.
 //!
 //! The last two are the parts of the bound that are estimates.
 
