@@ -1,9 +1,9 @@
 //! Keeping a basis orthogonal, and what it costs that it is in single precision and not orthogonal to the last digit.
 //!
 //! Not every step needs all earlier blocks for that. A loss that is small grows in one step by a ratio of couplings,
-//! and counts in the second order only ([`projected`](super::projected)), as long as what is taken out of a block stays
-//! in the projected operator (partial reorthogonalisation: Simon 1984; for blocks Grimes, Lewis and Simon 1994, § 4.3).
-//! They estimate the losses; here they are measured where they are taken out.
+//! and counts in the second order only (see [`projected()`](super::projected())), as long as what is taken out of a
+//! block stays in the projected operator (partial reorthogonalisation: Simon 1984; for blocks Grimes, Lewis and Simon
+//! 1994, § 4.3). They estimate the losses; here they are measured where they are taken out.
 
 use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
@@ -123,7 +123,7 @@ impl Krylov<'_> {
     /// By how much the projected operator is off, for two reasons. The components C that orthogonalisation took out
     /// are those along vectors rounded to single precision, whose products with each other are not quite those of an
     /// orthonormal basis. And that basis is off orthogonality by some Ω, and the operator by ‖Ω‖ ‖C‖
-    /// ([`projected`](super::projected)). C came of Ω, multiplied by couplings: of what was taken out along a block
+    /// ([`projected()`](super::projected())). C came of Ω, multiplied by couplings: of what was taken out along a block
     /// its share in the coupling there is what Ω was.
     pub(in crate::spectrum) fn leak(&self) -> f64 {
         self.off
