@@ -86,7 +86,8 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         let y = below.height().saturating_sub(1);
         let room = (below.width() as usize).saturating_sub(2);
         if y > 0 {
-            below.put(1, 0, &text::fit(&most_confused(state, &matrix), room), Role::Plain);
+            let said = most_confused(state, &matrix, &|said| text::width(said) <= room);
+            below.put(1, 0, &text::fit(&said, room), Role::Plain);
         }
         let said = cell_in_words(state, &matrix);
         below.put(1, y, &text::fit(&said, room), Role::Strong);
@@ -202,14 +203,23 @@ fn cell_in_words(state: &State, matrix: &Matrix) -> String {
     }
 }
 
-/// The class that is wrong most often, and what its models are taken for.
-fn most_confused(state: &State, matrix: &Matrix) -> String {
+/// The class that is wrong most often, and what its models are taken for, as far as that fits.
+fn most_confused(state: &State, matrix: &Matrix, fits: &dyn Fn(&str) -> bool) -> String {
     let Some(class) = matrix.most_confused() else { return "every model is recognised".to_owned() };
     let (wrong, all) = matrix.wrong_of(class);
     let others = matrix.taken_for(class);
-    let others = others.iter().map(|&(other, count)| format!("{} {count}", names::class(&state.answer, other)));
     let own = names::class(&state.answer, class);
-    format!("most often wrong: {own}, {wrong} of {all}: {}", others.collect::<Vec<_>>().join(", "))
+    let said = |lead: &str, named: usize| {
+        let words = others.iter().take(named);
+        let words = words.map(|&(other, count)| format!("{} {count}", names::class(&state.answer, other)));
+        let more = others.len() - named;
+        let words: Vec<String> = words.chain((more > 0).then(|| format!("{more} more"))).collect();
+        format!("{lead}: {own}, {wrong} of {all}: {}", words.join(", "))
+    };
+    let leads = ["most often wrong", "most wrong"].into_iter();
+    let mut tried = leads.flat_map(|lead| (1..=others.len()).rev().map(move |named| (lead, named)));
+    let found = tried.find_map(|(lead, named)| Some(said(lead, named)).filter(|said| fits(said)));
+    found.unwrap_or_else(|| format!("most wrong: {own}, {wrong} of {all}"))
 }
 
 /// The fullest wrong cells.
@@ -217,7 +227,7 @@ fn worst(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
     let said = format!("{} of {} in the wrong class", matrix.wrong, matrix.total);
     let wide = (pane.width() as usize).saturating_sub(2);
     pane.put(1, 0, &text::fit(&said, wide), Role::Strong);
-    let lines = text::wrap(&most_confused(state, matrix), wide);
+    let lines = text::wrap(&most_confused(state, matrix, &|said| text::wrap(said, wide).len() <= 2), wide);
     let high = if pane.height() >= 8 { lines.len().min(2) as u16 } else { 0 };
     for (y, line) in (1..=high).zip(&lines) {
         pane.put(1, y, line, Role::Plain);

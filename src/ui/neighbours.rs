@@ -236,7 +236,7 @@ fn classes(state: &State, votes: &Votes, (listed, at): (&[usize], usize), pane: 
         pane.put(5, y, mark, role);
         let named = text::fit(names::class(&state.answer, vote.class as usize), name);
         pane.put(7, y, &named, if own { Role::Strong } else { Role::Plain });
-        pane.put_right(end + 8, y, &format!("{:+.2}", vote.score), Role::Plain);
+        pane.put_right(end + 8, y, &format!("{:+.2}", vote.score).replace('-', "−"), Role::Plain);
         pane.put_right(end + 15, y, &format!("{:.3}", vote.probability), Role::Plain);
         choose(listed, at, y, pane);
     }

@@ -117,13 +117,15 @@ struct Sheet {
 impl Sheet {
     fn new(state: &State, table: &Table, note: Note, width: u16) -> Self {
         let room = (width as usize).saturating_sub(2);
-        let title = text::wrap(&tight(&format!("Table {}: {}", table.number, table.title)), room);
         let columns: Vec<String> = table.columns.iter().map(|head| tight(head)).collect();
         let rows: Vec<Vec<String>> =
             listed(state, table).into_iter().map(|row| row.iter().map(number::cell).collect()).collect();
+        let shown = fitting(&columns, &rows, room);
+        let title = tight(&format!("Table {}: {}", table.number, table.title));
+        let title = text::wrap(&format!("{title}{}", left_out(state, columns.len() - shown)), room);
         // Differences are words for their sign, below the figures that the first row has.
         let words = |column: usize| matches!(table.rows.first().and_then(|row| row.get(column)), Some(Cell::Text(_)));
-        let widths = widths(&columns, &rows, room);
+        let widths = widths(&columns[..shown], &rows, room);
         let heads: Vec<Vec<String>> =
             columns.iter().zip(&widths).map(|(head, width)| text::wrap(head, *width)).collect();
         let high = heads.iter().map(Vec::len).max().unwrap_or(0);
@@ -138,7 +140,7 @@ impl Sheet {
         let mut lines: Vec<(Kind, Vec<String>)> = title.into_iter().map(|line| (Kind::Title, vec![line])).collect();
         lines.extend((0..high).map(head));
         lines.extend(rows.into_iter().map(|row| (Kind::Row, row)));
-        Self { lines, widths, numeric: (0..columns.len()).map(|column| !words(column)).collect(), note }
+        Self { lines, widths, numeric: (0..shown).map(|column| !words(column)).collect(), note }
     }
 
     /// Draws it with its first line at `top`, which may lie above the pane.
@@ -208,6 +210,34 @@ fn compare(a: Option<&Cell>, b: Option<&Cell>) -> std::cmp::Ordering {
     }
 }
 
+/// How many columns there is room for, the first two at least, with no word of theirs cut.
+fn fitting(heads: &[String], rows: &[Vec<String>], room: usize) -> usize {
+    let fits = |columns: &usize| {
+        let words: usize = (0..*columns).map(|column| broken(heads, rows, column)).sum();
+        words + GAP * columns.saturating_sub(1) <= room
+    };
+    (2..=heads.len()).rev().find(fits).unwrap_or(heads.len().min(2))
+}
+
+/// What is said of columns that there is no room for.
+fn left_out(state: &State, columns: usize) -> String {
+    match columns {
+        0 => String::new(),
+        _ if state.alone => format!(" ({} left out)", number::count(columns, "column")),
+        _ => format!(" (z: {} more)", number::count(columns, "column")),
+    }
+}
+
+/// The width of the widest cell of a column.
+fn cells(rows: &[Vec<String>], column: usize) -> usize {
+    rows.iter().filter_map(|row| row.get(column)).map(|cell| text::width(cell)).max().unwrap_or(0)
+}
+
+/// The width of a column whose head is broken between all of its words.
+fn broken(heads: &[String], rows: &[Vec<String>], column: usize) -> usize {
+    cells(rows, column).max(heads[column].split_whitespace().map(text::width).max().unwrap_or(0))
+}
+
 /// `T = 20` as one word, which is not broken.
 fn tight(words: &str) -> String {
     words.replace(" = ", "=")
@@ -217,13 +247,10 @@ fn tight(words: &str) -> String {
 /// words, the widest first; when that is not enough, cells are cut.
 fn widths(heads: &[String], rows: &[Vec<String>], room: usize) -> Vec<usize> {
     let columns = heads.len();
-    let cells =
-        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(|c| text::width(c)).max().unwrap_or(0);
     let head = |column: usize| text::width(&text::clean(&heads[column]));
-    let word = |column: usize| heads[column].split_whitespace().map(text::width).max().unwrap_or(0);
-    let broken: Vec<usize> = (0..columns).map(|column| cells(column).max(word(column))).collect();
+    let broken: Vec<usize> = (0..columns).map(|column| broken(heads, rows, column)).collect();
     let cut: Vec<usize> = broken.iter().map(|&width| width.min(LEAST)).collect();
-    let mut widths: Vec<usize> = (0..columns).map(|column| cells(column).max(head(column))).collect();
+    let mut widths: Vec<usize> = (0..columns).map(|column| cells(rows, column).max(head(column))).collect();
     let gaps = GAP * columns.saturating_sub(1);
     for least in [&broken, &cut] {
         while widths.iter().sum::<usize>() + gaps > room {
@@ -233,4 +260,25 @@ fn widths(heads: &[String], rows: &[Vec<String>], room: usize) -> Vec<usize> {
         }
     }
     widths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_go_before_words_are_cut() {
+        let words = |line: &[&str]| line.iter().map(|&word| word.to_owned()).collect::<Vec<String>>();
+        let heads = words(&["method", "ε on D", "k0", "ε on Q, k=10", "p on D"]);
+        let rows = [
+            words(&["first-k", "0.242", "8", "0.316", "–"]),
+            words(&["first-k − A", "+0.000", "+0", "+0.000", "1.000"]),
+        ];
+        // 11, 6 and 2, then 6 and 5, with two between.
+        for (room, columns) in [(38, 5), (37, 4), (31, 4), (30, 3), (20, 2), (5, 2)] {
+            assert_eq!(fitting(&heads, &rows, room), columns, "{room}");
+        }
+        assert_eq!(widths(&heads[..4], &rows, 31), [11, 6, 2, 6]);
+        assert_eq!(fitting(&heads[..1], &rows, 3), 1);
+    }
 }

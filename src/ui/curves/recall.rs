@@ -45,7 +45,12 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
         .filter_map(|(place, scheme)| Some((place, found.iter().find(|found| found.scheme == *scheme)?)))
         .collect();
     let queries = shown.iter().any(|(_, found)| !found.precision.query.is_empty());
-    let side = if queries { "queries Q against D" } else { "D, each against the others" };
+    let side = match (queries, pane.width() >= 66) {
+        (true, true) => "queries Q against D",
+        (true, false) => "Q",
+        (false, true) => "D, each against the others",
+        (false, false) => "D",
+    };
     heading(pane, 0, &format!("Figure 7: precision against recall, {side}"), note(state, stale));
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);

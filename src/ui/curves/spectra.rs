@@ -112,29 +112,35 @@ fn list(state: &State, all: &[Variant], pane: &mut Pane<'_>) {
             ],
         );
         pane.put(x, y, &text::fit(&variant.name(), 26), if on { Role::Plain } else { Role::Faint });
-        let (said, role) = said(&state.standing(place));
+        let ([long, short], role) = said(&state.standing(place));
         let at = x + 27;
-        pane.put(at, y, &text::fit(&said, width.saturating_sub(at + 1) as usize), role);
+        let room = width.saturating_sub(at + 1) as usize;
+        pane.put(at, y, &text::fit(if text::width(&long) <= room { &long } else { &short }, room), role);
     }
 }
 
-fn said(standing: &Standing) -> (String, Role) {
+/// How a spectrum stands, at length and in short.
+fn said(standing: &Standing) -> ([String; 2], Role) {
+    let same = |said: &str| [said.to_owned(), said.to_owned()];
     match standing {
         Standing::There(first_k) => (best(first_k), Role::Plain),
-        Standing::Computing(done, total) => (format!("computing {done}/{total}"), Role::Warn),
-        Standing::Waiting => ("waits for those before it".to_owned(), Role::Warn),
-        Standing::Off(seconds) if *seconds <= 0.0 => ("off: takes a moment".to_owned(), Role::Faint),
+        Standing::Computing(done, total) => {
+            ([format!("computing {done}/{total}"), format!("{done} of {total}")], Role::Warn)
+        }
+        Standing::Waiting => (["waits for those before it".to_owned(), "waits".to_owned()], Role::Warn),
+        Standing::Off(seconds) if *seconds <= 0.0 => (same("off: a moment"), Role::Faint),
         Standing::Off(seconds) => {
-            let said = format!("off: {} of processor time", about(*seconds));
-            (said, Role::Faint)
+            let about = about(*seconds);
+            ([format!("off: {about} of processor time"), format!("off: {about}")], Role::Faint)
         }
     }
 }
 
-fn best(first_k: &FirstK) -> String {
+fn best(first_k: &FirstK) -> [String; 2] {
     let error = number::ratio(first_k.error.at(first_k.best_error).map(|score| score.train));
     let adr = number::ratio(first_k.adr.at(first_k.best_adr).map(|score| score.train));
-    format!("ε {error} at k {}, ADR {adr} at k {}", first_k.best_error, first_k.best_adr)
+    let short = format!("ε {error} at k {}", first_k.best_error);
+    [format!("{short}, ADR {adr} at k {}", first_k.best_adr), short]
 }
 
 /// A time that is an estimate from above: nothing of it may be in the store.

@@ -11,6 +11,7 @@ use super::super::{
     dots::Stroke,
     heading::{Note, heading},
     look::Role,
+    names::Names,
     pane::{self, Pane},
     plot::Axis,
     text,
@@ -25,7 +26,7 @@ use crate::{
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let width = (pane.width() as usize).saturating_sub(2);
     let said = match state.variation() {
-        Some(Ok(variation)) => return charts(variation, pane),
+        Some(Ok(variation)) => return charts(state, variation, pane),
         Some(Err(reason)) => (reason.to_owned(), Role::Warn),
         None => match &state.experiment.varying {
             Some(varying) => {
@@ -52,15 +53,18 @@ fn offer(state: &State) -> String {
     )
 }
 
-fn charts(variation: &Variation, pane: &mut Pane<'_>) {
-    let (model, class) = (text::clean(&variation.model), text::clean(&variation.class));
+fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
+    let names = Names::new(&state.answer);
+    let model = state.answer.models.iter().find(|model| model.name == variation.model);
+    let model = text::clean(model.map_or(&variation.model, |model| names.of(model)));
+    let class = text::clean(&variation.class);
     heading(pane, 0, &format!("Figure 1: the first {EIGENVALUES} eigenvalues of {model} {class}"), Note::Settled);
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let differences = variation.differences();
-    let wide = 38;
+    let wide = 42;
     let across = (rest.width / wide).max(1);
-    let lines = (variation.variants.len() as u16).div_ceil(across).min(rest.height.saturating_sub(8));
+    let lines = ((variation.variants.len() as u16).div_ceil(across) + 1).min(rest.height.saturating_sub(8));
     let list = pane::cut_bottom(&mut rest, lines);
     let columns = if rest.width >= 70 { 2 } else { 1 };
     let shown = panels(variation, columns, rest.height);
@@ -75,16 +79,30 @@ fn charts(variation: &Variation, pane: &mut Pane<'_>) {
         }
     }
     let mut list = pane.part(list);
-    for (place, (spectra, [fem, _])) in variation.variants.iter().zip(differences).enumerate() {
-        let (x, y) = ((place as u16 % across) * wide + 1, place as u16 / across);
+    list.put(1, 0, "mean change of λ against a: FEM, cot", Role::Faint);
+    for (place, (spectra, [fem, cot])) in variation.variants.iter().zip(differences).enumerate() {
+        let (x, y) = ((place as u16 % across) * wide + 1, 1 + place as u16 / across);
         list.put(x, y, &letter(place).to_string(), Role::Class(place));
-        let percent = match fem {
-            Some(part) if place > 0 => format!(" {:.2} %", 100.0 * part),
-            Some(_) => String::new(),
-            None => " none".to_owned(),
+        let said = match (place, &spectra.why) {
+            (0, _) => String::new(),
+            (_, Some(why)) if fem.is_none() && cot.is_none() => format!(" {}", text::clean(why)),
+            _ => format!(" {}, {}", percent(fem), percent(cot)),
         };
-        let x = list.put(x + 2, y, &text::fit(&spectra.name, wide as usize - 13), Role::Plain);
-        list.put(x, y, &percent, Role::Faint);
+        let room = wide as usize - 4;
+        let x =
+            list.put(x + 2, y, &text::fit(&spectra.name, room.saturating_sub(text::width(&said).min(24))), Role::Plain);
+        let room = (room + 2).saturating_sub((x - place as u16 % across * wide) as usize);
+        list.put(x, y, &text::fit(&said, room), Role::Faint);
+    }
+}
+
+/// A part in percent, of two digits or three.
+fn percent(part: Option<f64>) -> String {
+    match part.map(|part| 100.0 * part) {
+        None => "none".to_owned(),
+        Some(percent) if percent < 1.0 => format!("{percent:.2} %"),
+        Some(percent) if percent < 10.0 => format!("{percent:.1} %"),
+        Some(percent) => format!("{percent:.0} %"),
     }
 }
 
