@@ -24,22 +24,22 @@ impl<T: Copy> ByVertex<T> {
         // Until the items are down, one place further: `first[a + 1]` is where the next item of `a` goes.
         let mut first = vec![0_u32; vertices + 2];
         let (mut some, mut count) = (None, 0_usize);
-        for (a, item) in items() {
+        items().try_for_each(|(a, item)| {
             first[a as usize + 2] += 1;
             count += 1;
             some = Some(item);
-            pulse.beat(4)?;
-        }
+            pulse.beat(4)
+        })?;
         for a in 0..vertices {
             first[a + 1] += first[a];
         }
         let mut places = some.map_or_else(Vec::new, |some| vec![some; count]);
-        for (a, item) in items() {
+        items().try_for_each(|(a, item)| {
             let at = &mut first[a as usize + 1];
             places[*at as usize] = item;
             *at += 1;
-            pulse.beat(6)?;
-        }
+            pulse.beat(6)
+        })?;
         first.pop();
         Ok(Self { first, items: places })
     }

@@ -48,12 +48,7 @@ pub(super) fn find(surface: &mut Surface, length: f64, pulse: &Pulse) -> Result<
     forget_forks(mesh, &sharp, pulse)?;
     forget_ends(mesh, &sharp, SHORT * length, pulse)?;
     forget_short(mesh, &sharp, SHORT * length, pulse)?;
-    let mut corners = Vec::with_capacity(mesh.vertex_slots() as usize);
-    for a in 0..mesh.vertex_slots() {
-        pulse.beat(30)?;
-        corners.push(is_corner(mesh, a));
-    }
-    surface.set_creases(corners, pulse)
+    surface.set_creases(is_corner, pulse)
 }
 
 /// Whether an edge within the surface is sharp, and the surface flat on both sides.
@@ -170,10 +165,8 @@ fn forget_short(mesh: &mut HalfEdges, sharp: &[u32], least: f64, pulse: &Pulse) 
     Ok(())
 }
 
+/// Whether creases meet, bend or end in a vertex.
 fn is_corner(mesh: &HalfEdges, a: u32) -> bool {
-    if !mesh.has_vertex(a) {
-        return false;
-    }
     let mut creases = mesh.around(a).filter(|&h| mesh.is_marked(h));
     match [creases.next(), creases.next(), creases.next()] {
         [None, ..] => false,

@@ -95,14 +95,9 @@ fn ends(triangles: &[[u32; 3]], h: u32) -> (u32, u32) {
 /// For each half-edge the one of the other triangle at its edge, in whatever direction; `NONE` at the boundary.
 fn mates(points: &[V3], triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<u32>, RemeshError> {
     let count = 3 * triangles.len() as u32;
-    let low = |h: u32| {
-        let (a, b) = ends(triangles, h);
-        (a.min(b), a.max(b))
-    };
     let by_low = || {
-        (0..count).map(|h| {
-            let (a, b) = low(h);
-            (a, (b, h))
+        (0..).step_by(3).zip(triangles).flat_map(|(h, &[a, b, c])| {
+            [(a, b, h), (b, c, h + 1), (c, a, h + 2)].map(|(a, b, h): (u32, u32, u32)| (a.min(b), (a.max(b), h)))
         })
     };
     let mut fans = ByVertex::new(points.len(), by_low, pulse)?;

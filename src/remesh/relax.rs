@@ -68,12 +68,16 @@ impl Work<'_> {
     pub(super) fn balance(&mut self) -> Result<(), RemeshError> {
         let wanted = self.surface.area(self.pulse)?;
         let shifts = self.shifts()?;
-        let area = |share: f64| -> Result<f64, Stopped> {
-            let at = |a: u32| self.mesh.point(a) + shifts[a as usize] * share;
+        let mut moved: Vec<V3> = Vec::with_capacity(shifts.len());
+        let mut area = |share: f64| -> Result<f64, Stopped> {
+            moved.clear();
+            moved.extend(self.mesh.points.iter().zip(&shifts).map(|(&point, &shift)| point + shift * share));
+            self.pulse.beat(5 * moved.len())?;
             let mut sum = 0.0;
-            for [a, b, c] in self.mesh.triangles().filter(|t| !t.iter().any(|&a| self.is_ghost(a))) {
-                sum += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
-                self.pulse.beat(25)?;
+            for triangle in self.mesh.triangles().filter(|t| !t.iter().any(|&a| self.is_ghost(a))) {
+                let [p, q, r] = triangle.map(|a| moved[a as usize]);
+                sum += 0.5 * (q - p).cross(r - p).norm();
+                self.pulse.beat(15)?;
             }
             Ok(sum)
         };

@@ -53,10 +53,9 @@ pub(super) fn find(surface: &Surface, length: f64, pulse: &Pulse) -> Result<Vec<
         pulse.beat(50)?;
         // Edges of creases lie along them, and beside flat places it is flat.
         let is_flat = |b: u32| (FLAT * length..=none).contains(&limits[b as usize]);
-        let is_known = |h: u32| {
-            mesh.is_marked(h) || !surface.is_real(h) || (is_flat(mesh.end(h)) && mesh.length(h) < 0.5 * length)
-        };
-        if !mesh.has_vertex(a) || mesh.around(a).any(is_known) {
+        let is_beside_flat = |h: u32| is_flat(mesh.end(h)) && mesh.length(h) < 0.5 * length;
+        let is_inner = surface.is_real(mesh.side_from(a)) && !surface.is_creased(a);
+        if !is_inner || mesh.around(a).any(is_beside_flat) {
             continue;
         }
         pulse.beat(1000)?;

@@ -21,7 +21,8 @@ pub(super) struct Surface {
     spans: Vec<(V3, f64)>,
     /// Unit normals of the vertices; zero where there is none, which is on creases.
     normals: Vec<V3>,
-    /// The vertices where creases meet, bend or end.
+    /// The vertices on creases, and those where creases meet, bend or end.
+    creased: Vec<bool>,
     corners: Vec<bool>,
     /// The greatest length of an edge at each vertex.
     limits: Vec<f64>,
@@ -70,7 +71,15 @@ impl Surface {
             *normal = normal.unit();
             pulse.beat(10)?;
         }
-        Ok(Self { mesh, faces, spans, normals, corners: vec![false; count], limits: vec![0.0; count] })
+        Ok(Self {
+            mesh,
+            faces,
+            spans,
+            normals,
+            creased: vec![false; count],
+            corners: vec![false; count],
+            limits: vec![0.0; count],
+        })
     }
 
     /// The sum of the triangles' areas.
@@ -133,16 +142,29 @@ impl Surface {
         real.fold(V3::default(), |sum, h| sum + self.face_normal(triangle_of(h))).unit() * FAINT
     }
 
-    /// Takes over the marks of the mesh as creases.
-    pub(super) fn set_creases(&mut self, corners: Vec<bool>, pulse: &Pulse) -> Result<(), Stopped> {
-        self.corners = corners;
-        for h in 0..self.mesh.slots() {
-            pulse.beat(2)?;
-            if self.mesh.is_marked(h) {
-                self.normals[self.mesh.start(h) as usize] = V3::default();
+    /// Takes over the marks of the mesh as creases; `is_corner` tells which of the vertices on them are corners.
+    pub(super) fn set_creases(
+        &mut self,
+        is_corner: impl Fn(&HalfEdges, u32) -> bool,
+        pulse: &Pulse,
+    ) -> Result<(), Stopped> {
+        for triangle in 0..self.mesh.triangle_slots() {
+            pulse.beat(6)?;
+            for h in sides(triangle) {
+                let a = self.mesh.start(h);
+                if self.mesh.is_marked(h) && !std::mem::replace(&mut self.creased[a as usize], true) {
+                    pulse.beat(30)?;
+                    self.normals[a as usize] = V3::default();
+                    self.corners[a as usize] = is_corner(&self.mesh, a);
+                }
             }
         }
         Ok(())
+    }
+
+    /// Whether a crease goes through a vertex; the boundary is one.
+    pub(super) fn is_creased(&self, a: u32) -> bool {
+        self.creased[a as usize]
     }
 
     pub(super) fn is_real(&self, h: u32) -> bool {
