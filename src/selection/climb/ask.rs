@@ -3,9 +3,10 @@
 use pulp::Simd;
 
 use super::{
+    Cost,
     block::{Block, LANES, LEAST, Losses, MOST},
     ground::{Ground, POLL},
-    race::{Mark, Outcome},
+    race::{Bound, Outcome},
     row::NEAR,
     sketch::{self, Sketch},
 };
@@ -13,6 +14,9 @@ use crate::{
     metrics::{Cancelled, Term},
     watch::Watch,
 };
+
+/// Fewer candidates than this are looked into one by one.
+const FEW: usize = 4;
 
 /// Adds up the losses of all models asked for each of the candidates `indices`, a vector of them at a time, until none
 /// of those can stay below the bound.
@@ -22,7 +26,7 @@ use crate::{
 pub(super) struct Ask<'a, T> {
     pub(super) ground: &'a Ground<'a, T>,
     pub(super) indices: &'a [u32],
-    pub(super) bound: &'a dyn Fn() -> Mark,
+    pub(super) bound: &'a Bound,
     pub(super) watch: &'a dyn Watch,
 }
 
@@ -40,15 +44,38 @@ impl<T: Term> pulp::WithSimd for Ask<'_, T> {
         }
         let mut outcomes = Vec::with_capacity(self.indices.len());
         for indices in self.indices.chunks(S::F32_LANES) {
-            let mut some = self.sketch(simd, indices)?;
-            let left: Vec<usize> = (0..indices.len()).filter(|&at| some[at].is_none()).collect();
-            for places in left.chunks(S::F64_LANES) {
-                let indices: Vec<u32> = places.iter().map(|&at| indices[at]).collect();
-                let mut exact = Vec::with_capacity(places.len());
-                self.block(simd, &indices, &mut exact)?;
-                for (&at, outcome) in places.iter().zip(exact) {
+            let (mut some, roughly) = self.sketch(simd, indices)?;
+            let mut left: Vec<usize> = (0..indices.len()).filter(|&at| some[at].is_none()).collect();
+            // The best by its sketch is likely the best: with its loss known, the sketches of most others are enough.
+            left.sort_unstable_by_key(|&at| (roughly[at], indices[at]));
+            let mut first = true;
+            while !left.is_empty() {
+                // For the error the nearest few models are enough: side by side is quicker even for one.
+                let alone = self.ground.judge.cost() == Cost::Adr && (first || left.len() < FEW);
+                let count = if alone { 1 } else { left.len().min(S::F64_LANES) };
+                let places: Vec<usize> = left.drain(..count).collect();
+                let mut exact = Vec::with_capacity(count);
+                if alone {
+                    exact.push(self.ground.exactly(indices[places[0]], self.bound, self.watch)?);
+                } else {
+                    let indices: Vec<u32> = places.iter().map(|&at| indices[at]).collect();
+                    self.block(simd, &indices, &mut exact)?;
+                }
+                for (at, outcome) in places.into_iter().zip(exact) {
+                    if let Outcome::Whole(loss) = outcome {
+                        self.bound.lower((loss, indices[at]));
+                    }
                     some[at] = Some(outcome);
                 }
+                let bound = self.bound.mark();
+                left.retain(|&at| {
+                    let open = (roughly[at], indices[at]) < bound;
+                    if !open {
+                        some[at] = Some(Outcome::GivenUp(roughly[at] as f64));
+                    }
+                    open
+                });
+                first = false;
             }
             outcomes.extend(some.into_iter().flatten());
         }
@@ -57,14 +84,16 @@ impl<T: Term> pulp::WithSimd for Ask<'_, T> {
 }
 
 impl<T: Term> Ask<'_, T> {
-    /// The outcomes of those candidates, as many as fit, that a sketch is enough to give up on.
+    /// The outcomes of those candidates, as many as fit, that a sketch is enough to give up on. When it is not enough
+    /// for all, their losses are at least those that come with them.
     #[inline(always)]
-    fn sketch<S: Simd>(&self, simd: S, indices: &[u32]) -> Result<Vec<Option<Outcome>>, Cancelled> {
+    fn sketch<S: Simd>(&self, simd: S, indices: &[u32]) -> Result<(Vec<Option<Outcome>>, Vec<u128>), Cancelled> {
         let Ground { rows, asked, judge, columns, .. } = self.ground;
         let mut sketch = Sketch::<S>::new(simd, columns, indices, rows.len());
         let unit = judge.rough_unit();
         let mut losses = [0; sketch::LANES];
         let mut outcomes = vec![None; indices.len()];
+        let mut roughly = vec![0; indices.len()];
         for (nth, models) in asked.chunks(POLL).enumerate() {
             if self.watch.cancelled() {
                 return Err(Cancelled);
@@ -72,19 +101,21 @@ impl<T: Term> Ask<'_, T> {
             for &model in models {
                 sketch.add_losses::<T>(simd, model as usize, &rows[model as usize], judge, &mut losses);
             }
-            let bound = (self.bound)();
-            let losses = Sketch::<S>::by_candidate(&losses).map(|loss| u128::from(loss) * unit);
-            let beaten: Vec<_> = indices.iter().zip(losses).map(|(&i, loss)| ((loss, i) >= bound, loss)).collect();
+            let bound = self.bound.mark();
+            for (roughly, loss) in roughly.iter_mut().zip(Sketch::<S>::by_candidate(&losses)) {
+                *roughly = u128::from(loss) * unit;
+            }
+            let beaten = |(&index, &loss): (&u32, &u128)| (loss, index) >= bound;
             let last = (nth + 1) * POLL >= asked.len();
-            if last || beaten.iter().all(|&(beaten, _)| beaten) {
+            if last || indices.iter().zip(&roughly).all(beaten) {
                 // Those not asked are taken to change as those asked did.
                 let share = self.ground.share((nth + 1) * POLL);
-                let outcome = |(beaten, loss): (bool, u128)| beaten.then_some(Outcome::GivenUp(loss as f64 / share));
-                outcomes = beaten.into_iter().map(outcome).collect();
+                let given_up = |of: (&u32, &u128)| beaten(of).then_some(Outcome::GivenUp(*of.1 as f64 / share));
+                outcomes = indices.iter().zip(&roughly).map(given_up).collect();
                 break;
             }
         }
-        Ok(outcomes)
+        Ok((outcomes, roughly))
     }
 
     /// The outcomes of candidates that fit one vector.
@@ -136,7 +167,7 @@ impl<T: Term> Ask<'_, T> {
             let loss = u128::from(least) * unit;
             outcomes.push(if unit == 1 && least == most {
                 Outcome::Whole(loss)
-            } else if (loss, index) >= (self.bound)() {
+            } else if (loss, index) >= self.bound.mark() {
                 Outcome::GivenUp(loss as f64)
             } else {
                 self.ground.exactly(index, self.bound, self.watch)?
@@ -150,7 +181,7 @@ impl<T: Term> Ask<'_, T> {
         if self.watch.cancelled() {
             return Err(Cancelled);
         }
-        let bound = (self.bound)();
+        let bound = self.bound.mark();
         let unit = self.ground.judge.unit();
         Ok(indices.iter().zip(least).all(|(&index, &loss)| (u128::from(loss) * unit, index) >= bound))
     }

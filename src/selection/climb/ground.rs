@@ -8,7 +8,7 @@ use super::{
     ask::Ask,
     judge::Judge,
     line::Line,
-    race::{Mark, Outcome},
+    race::{Bound, Outcome},
     row::Row,
 };
 use crate::{
@@ -82,12 +82,7 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The losses with each of some indices added.
-    pub(super) fn with(
-        &self,
-        indices: &[u32],
-        bound: &dyn Fn() -> Mark,
-        watch: &dyn Watch,
-    ) -> Result<Vec<Outcome>, Cancelled> {
+    pub(super) fn with(&self, indices: &[u32], bound: &Bound, watch: &dyn Watch) -> Result<Vec<Outcome>, Cancelled> {
         if self.selected.is_empty() {
             return indices.iter().map(|&index| self.alone(index, bound, watch)).collect();
         }
@@ -95,7 +90,7 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The loss with `index` alone.
-    fn alone(&self, index: u32, bound: &dyn Fn() -> Mark, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+    fn alone(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
         if !T::GROWS {
             return self.exactly(index, bound, watch);
         }
@@ -113,12 +108,7 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The loss with `index` removed.
-    pub(super) fn without(
-        &self,
-        index: u32,
-        bound: &dyn Fn() -> Mark,
-        watch: &dyn Watch,
-    ) -> Result<Vec<Outcome>, Cancelled> {
+    pub(super) fn without(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Vec<Outcome>, Cancelled> {
         if self.selected.len() == 1 {
             return Ok(vec![Outcome::Whole(self.judge.worst())]);
         }
@@ -132,12 +122,7 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The loss with `index` added.
-    pub(super) fn exactly(
-        &self,
-        index: u32,
-        bound: &dyn Fn() -> Mark,
-        watch: &dyn Watch,
-    ) -> Result<Outcome, Cancelled> {
+    pub(super) fn exactly(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
         let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
         self.one_by_one(index, bound, watch, |model| {
             nearest.begin(Some(model));
@@ -155,7 +140,7 @@ impl<'a, T: Term> Ground<'a, T> {
     fn one_by_one(
         &self,
         index: u32,
-        bound: &dyn Fn() -> Mark,
+        bound: &Bound,
         watch: &dyn Watch,
         mut loss_of: impl FnMut(usize) -> u128,
     ) -> Result<Outcome, Cancelled> {
@@ -165,7 +150,7 @@ impl<'a, T: Term> Ground<'a, T> {
                 return Err(Cancelled);
             }
             loss += models.iter().map(|&model| loss_of(model as usize)).sum::<u128>();
-            if (loss, index) >= bound() {
+            if (loss, index) >= bound.mark() {
                 let asked = (nth + 1) * POLL;
                 return Ok(Outcome::GivenUp(loss as f64 / self.share(asked)));
             }
@@ -198,10 +183,38 @@ impl<T: Term> pulp::NullaryFnOnce for LossOf<'_, T> {
         for &index in indices {
             add::<T>(&mut nearest.sums, &ground.columns, ground.sample.train.row(model), index);
         }
+        if let Some(loss) = by_counting(ground.judge, model, &nearest.sums) {
+            return loss;
+        }
         let strangers = ground.rows[model].near.iter();
         nearest.seed(ground.judge.looks_at(model), strangers.map(|&(_, other)| other));
         ground.judge.loss(model, nearest.update())
     }
+}
+
+/// The loss of one model at the distances `sums`, by how many models are nearer than each of its relatives. None when
+/// equal distances leave open who comes first.
+#[inline(always)]
+fn by_counting(judge: &Judge<'_>, model: usize, sums: &[f64]) -> Option<u128> {
+    let relatives = judge.class(model).iter().filter(|&&other| other as usize != model);
+    let mut relatives: Vec<f64> = relatives.map(|&other| sums[other as usize]).collect();
+    relatives.sort_unstable_by(f64::total_cmp);
+    let (gains, mut gained) = (judge.gains(model), 0);
+    for relative in relatives {
+        let (mut nearer, mut as_near) = (0_u64, 0_u64);
+        for &sum in sums {
+            nearer += u64::from(sum < relative);
+            as_near += u64::from(sum <= relative);
+        }
+        // Relatives that are farther away rank no higher.
+        let Some(&gain) = gains.get(nearer as usize) else { break };
+        // Itself is as near as itself.
+        if as_near > nearer + 1 {
+            return None;
+        }
+        gained += gain;
+    }
+    Some(judge.whole(model) - gained)
 }
 
 /// Brings the sums of one row up to date.

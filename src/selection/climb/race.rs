@@ -1,7 +1,7 @@
 //! The candidates of one move against each other.
 
 use std::sync::{
-    Mutex, PoisonError,
+    Mutex, MutexGuard, PoisonError,
     atomic::{AtomicU64, AtomicUsize, Ordering},
 };
 
@@ -19,6 +19,37 @@ pub(super) enum Outcome {
     Whole(u128),
     /// Given up: it can't stay below the bound. The loss it would come to, roughly.
     GivenUp(f64),
+}
+
+/// The best moves so far, and what is to be beaten.
+pub(super) struct Bound {
+    best: Mutex<Vec<Mark>>,
+}
+
+impl Bound {
+    /// For the `keep` best below `loss`.
+    fn new(loss: u128, keep: usize) -> Self {
+        // Index 0 comes before all: an equal loss is not below.
+        Self { best: Mutex::new(vec![(loss, 0); keep]) }
+    }
+
+    /// What a candidate has to stay below.
+    pub(super) fn mark(&self) -> Mark {
+        self.lock().last().copied().unwrap_or_default()
+    }
+
+    /// Takes in what a candidate comes to. Once or again is the same.
+    pub(super) fn lower(&self, mark: Mark) {
+        let mut best = self.lock();
+        if let Err(at) = best.binary_search(&mark) {
+            best.insert(at, mark);
+            best.pop();
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Mark>> {
+        self.best.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// Finds the best move, giving up on candidates as soon as they can't be it.
@@ -47,12 +78,9 @@ impl Race {
         evaluate: F,
     ) -> Result<Vec<Mark>, Cancelled>
     where
-        F: Fn(&[u32], &dyn Fn() -> Mark) -> Result<Vec<Outcome>, Cancelled> + Sync,
+        F: Fn(&[u32], &Bound) -> Result<Vec<Outcome>, Cancelled> + Sync,
     {
-        // Index 0 comes before all: an equal loss is not below.
-        let best = Mutex::new(vec![(loss, 0); keep]);
-        let lock = || best.lock().unwrap_or_else(PoisonError::into_inner);
-        let bound = || lock().last().copied().unwrap_or_default();
+        let bound = Bound::new(loss, keep);
         let form = |index: u32| f64::from_bits(self.form[index as usize].load(Ordering::Relaxed));
         let mut order: Vec<(f64, u32)> = candidates.iter().map(|&index| (form(index), index)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -65,10 +93,7 @@ impl Race {
                     let form = match outcome {
                         Outcome::GivenUp(form) => form,
                         Outcome::Whole(whole) => {
-                            let mut best = lock();
-                            best.push((whole, index));
-                            best.sort_unstable();
-                            best.truncate(keep);
+                            bound.lower((whole, index));
                             whole as f64
                         }
                     };
@@ -77,8 +102,28 @@ impl Race {
             }
             Ok(())
         })?;
-        let mut best = best.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut best = bound.best.into_inner().unwrap_or_else(PoisonError::into_inner);
         best.retain(|&(_, index)| index > 0);
         Ok(best)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Bound;
+
+    #[test]
+    fn the_bound_is_the_last_of_those_kept() {
+        let bound = Bound::new(10, 2);
+        assert_eq!(bound.mark(), (10, 0));
+        bound.lower((7, 3));
+        // Twice is once, and what is no better is none of them.
+        bound.lower((7, 3));
+        bound.lower((10, 1));
+        assert_eq!(bound.mark(), (10, 0));
+        bound.lower((7, 2));
+        assert_eq!(bound.mark(), (7, 3));
+        bound.lower((9, 1));
+        assert_eq!(bound.mark(), (7, 3));
     }
 }

@@ -7,7 +7,7 @@
 
 use std::hint::black_box;
 
-use pulp::Simd;
+use pulp::{Simd, bytemuck::cast};
 
 use super::{
     Cost,
@@ -100,15 +100,14 @@ impl<S: Simd> Sketch<S> {
             }
         }
         let live = self.count::<T>(simd, asked, row);
-        let (credits, whole) = judge.rough_credits(asked);
-        let mut gained = [0; LANES];
-        for (nth, before) in (0..).zip(&self.before[..live]) {
-            let before: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(before));
-            for (gained, before) in gained.iter_mut().zip(before) {
-                *gained += credits[(nth + before) as usize % RANKS];
-            }
+        let ((credits, whole), filled) = (judge.rough_credits(asked), judge.class(asked).len());
+        let mut gained = simd.splat_u32s(0);
+        for (nth, &before) in (0..).zip(&self.before[..live]) {
+            let rank = simd.add_u32s(before, simd.splat_u32s(nth));
+            gained = simd.add_u32s(gained, look_up(simd, credits, rank, filled));
         }
-        for (loss, gained) in losses.iter_mut().zip(gained) {
+        let gained: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(&gained));
+        for (loss, &gained) in losses.iter_mut().zip(gained) {
             // Credits are rounded up, so all of them may be more than the whole.
             *loss += u64::from(whole.saturating_sub(gained));
         }
@@ -169,13 +168,70 @@ impl<S: Simd> Sketch<S> {
     }
 }
 
+/// The entries of a table that is 0 from the entry `filled` on.
+#[inline(always)]
+fn look_up<S: Simd>(simd: S, table: &[u32; RANKS], at: S::u32s, filled: usize) -> S::u32s {
+    debug_assert!(filled <= RANKS, "the table ends before");
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(v4) = (&simd as &dyn std::any::Any).downcast_ref::<pulp::x86::V4>()
+        && filled < 32
+    {
+        // Two registers hold what there is, and a 0 at the end for all beyond.
+        let (low, high) = S::as_simd_u32s(&table[..32]).0.split_at(1);
+        let at = simd.min_u32s(at, simd.splat_u32s(31));
+        let found = v4.avx512f._mm512_permutex2var_epi32(cast(low[0]), cast(at), cast(high[0]));
+        return cast(found);
+    }
+    let places: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(&at));
+    let mut found = [0; LANES];
+    for (found, &place) in found.iter_mut().zip(places) {
+        *found = table[place as usize % RANKS];
+    }
+    simd.partial_load_u32s(&found[..S::U32_LANES])
+}
+
 /// The same bits.
 #[inline(always)]
 fn as_u32s<S: Simd>(simd: S, a: S::f64s) -> S::u32s {
-    pulp::bytemuck::cast(simd.transmute_u64s_f64s(a))
+    cast(simd.transmute_u64s_f64s(a))
 }
 
 #[inline(always)]
 fn none<S: Simd>(simd: S, mask: S::m32s) -> bool {
     simd.first_true_m32s(mask) == S::F32_LANES
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Simd, WithSimd};
+
+    use super::{LANES, RANKS, look_up};
+
+    /// How many entries differ from the table's when all are looked up, lanes in no order.
+    struct Wrong<'a>(&'a [u32; RANKS], usize);
+
+    impl WithSimd for Wrong<'_> {
+        type Output = usize;
+
+        fn with_simd<S: Simd>(self, simd: S) -> usize {
+            let Self(table, filled) = self;
+            let places: Vec<u32> = (0..RANKS as u32).map(|at| at * 91 % RANKS as u32).collect();
+            let found = |places: &[u32]| {
+                let found = look_up(simd, table, simd.partial_load_u32s(places), filled);
+                pulp::bytemuck::cast_slice::<_, u32>(&[found]).to_vec()
+            };
+            let found = places.chunks(LANES.min(S::U32_LANES)).flat_map(found);
+            found.zip(&places).filter(|&(found, &place)| found != table[place as usize]).count()
+        }
+    }
+
+    #[test]
+    fn every_entry_is_found() {
+        for filled in [0, 1, 14, 16, 17, 31, 32, 33, 200] {
+            let mut table = [0; RANKS];
+            table[..filled].iter_mut().zip(7..).for_each(|(entry, value)| *entry = value);
+            assert_eq!(pulp::Arch::new().dispatch(Wrong(&table, filled)), 0, "{filled}");
+            assert_eq!(Wrong(&table, filled).with_simd(pulp::Scalar::new()), 0, "{filled}");
+        }
+    }
 }
