@@ -42,3 +42,38 @@ impl Columns {
         &self.data[col * self.stride..(col + 1) * self.stride]
     }
 }
+
+/// [`Features`] in panels of 8 models and 8 features: what is read together lies together. The last panels are padded
+/// with zeros.
+#[derive(Debug, Clone)]
+pub(crate) struct Panels {
+    /// Panels that have the same features.
+    models: usize,
+    /// Feature by feature.
+    panels: Vec<[[f64; Self::MODELS]; Self::FEATURES]>,
+}
+
+impl Panels {
+    /// The models of a panel: the lanes of the widest vector.
+    pub(crate) const MODELS: usize = 8;
+    /// The features of a panel.
+    pub(crate) const FEATURES: usize = 8;
+
+    pub(crate) fn new(features: &Features) -> Self {
+        let models = features.rows().div_ceil(Self::MODELS);
+        let mut panels = vec![[[0.0; Self::MODELS]; Self::FEATURES]; models * features.cols().div_ceil(Self::FEATURES)];
+        for row in 0..features.rows() {
+            let of_row = panels[row / Self::MODELS..].iter_mut().step_by(models);
+            for (panel, values) in of_row.zip(features.row(row).chunks(Self::FEATURES)) {
+                panel.iter_mut().zip(values).for_each(|(of_feature, &value)| of_feature[row % Self::MODELS] = value);
+            }
+        }
+        Self { models, panels }
+    }
+
+    /// The panel of the models and features that begin with these numbers.
+    #[inline(always)]
+    pub(crate) fn at(&self, model: usize, feature: usize) -> &[[f64; Self::MODELS]; Self::FEATURES] {
+        &self.panels[feature / Self::FEATURES * self.models + model / Self::MODELS]
+    }
+}
