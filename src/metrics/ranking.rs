@@ -13,11 +13,21 @@ use super::{Distance, Exam};
 /// When `asked` or an index is out of range.
 #[must_use]
 pub fn rank(exam: Exam<'_>, asked: usize, distance: Distance, selection: &[u32]) -> Vec<u32> {
+    nearest(exam, asked, distance, selection, usize::MAX)
+}
+
+/// The first `count` of the ranking, or all there are.
+fn nearest(exam: Exam<'_>, asked: usize, distance: Distance, selection: &[u32], count: usize) -> Vec<u32> {
     let row = exam.row(asked);
     let models = (0..exam.models().rows()).filter(|&model| Some(model) != exam.left_out(asked));
     let mut ranking: Vec<(f64, u32)> =
         models.map(|model| (distance.sum(row, exam.models().row(model), selection), model as u32)).collect();
-    ranking.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let order = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+    if count < ranking.len() {
+        ranking.select_nth_unstable_by(count, order);
+        ranking.truncate(count);
+    }
+    ranking.sort_unstable_by(order);
     ranking.into_iter().map(|(_, model)| model).collect()
 }
 
@@ -56,7 +66,7 @@ pub fn figures(exam: Exam<'_>, distance: Distance, selection: &[u32]) -> (f64, f
     }
     let (relevant, recall, labels) = (exam.relevant(), exam.recall(), exam.labels());
     let ask = |asked: usize| {
-        let ranking = rank(exam, asked, distance, selection);
+        let ranking = nearest(exam, asked, distance, selection, relevant[asked].max(1));
         let right = |model: &u32| labels[*model as usize] == exam.label(asked);
         let found = ranking.iter().zip(recall.weights(relevant[asked])).filter(|(model, _)| right(model));
         (usize::from(!ranking.first().is_some_and(right)), found.map(|(_, &weight)| weight).sum::<u128>())

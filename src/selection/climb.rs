@@ -21,8 +21,10 @@ use crate::{
 mod ask;
 mod block;
 mod ground;
+mod habits;
 mod judge;
 mod line;
+mod order;
 mod race;
 mod row;
 mod search;

@@ -6,6 +6,7 @@ use super::{
     Cost,
     block::{Block, LANES, LEAST, Losses, MOST},
     ground::{Ground, POLL},
+    habits::Habits,
     race::{Bound, Outcome},
     row::NEAR,
     sketch::{self, Sketch},
@@ -27,6 +28,7 @@ pub(super) struct Ask<'a, T> {
     pub(super) ground: &'a Ground<'a, T>,
     pub(super) indices: &'a [u32],
     pub(super) bound: &'a Bound,
+    pub(super) habits: &'a Habits,
     pub(super) watch: &'a dyn Watch,
 }
 
@@ -91,7 +93,9 @@ impl<T: Term> Ask<'_, T> {
         let Ground { rows, asked, judge, columns, .. } = self.ground;
         let mut sketch = Sketch::<S>::new(simd, columns, indices, rows.len());
         let unit = judge.rough_unit();
+        let asked = self.habits.order(indices, asked);
         let mut losses = [0; sketch::LANES];
+        let mut seen = Vec::with_capacity(asked.len());
         let mut outcomes = vec![None; indices.len()];
         let mut roughly = vec![0; indices.len()];
         for (nth, models) in asked.chunks(POLL).enumerate() {
@@ -99,7 +103,13 @@ impl<T: Term> Ask<'_, T> {
                 return Err(Cancelled);
             }
             for &model in models {
+                let before = losses;
                 sketch.add_losses::<T>(simd, model as usize, &rows[model as usize], judge, &mut losses);
+                let mut lost = [0; sketch::LANES];
+                for ((lost, now), before) in lost.iter_mut().zip(losses).zip(before) {
+                    *lost = judge.roughly_in_brief(now - before);
+                }
+                seen.push(lost);
             }
             let bound = self.bound.mark();
             for (roughly, loss) in roughly.iter_mut().zip(Sketch::<S>::by_candidate(&losses)) {
@@ -109,10 +119,16 @@ impl<T: Term> Ask<'_, T> {
             let last = (nth + 1) * POLL >= asked.len();
             if last || indices.iter().zip(&roughly).all(beaten) {
                 // Those not asked are taken to change as those asked did.
-                let share = self.ground.share((nth + 1) * POLL);
+                let share = self.ground.share(&asked[..seen.len()]);
                 let given_up = |of: (&u32, &u128)| beaten(of).then_some(Outcome::GivenUp(*of.1 as f64 / share));
                 outcomes = indices.iter().zip(&roughly).map(given_up).collect();
                 break;
+            }
+        }
+        for (at, &index) in indices.iter().enumerate() {
+            let (mut of_index, lane) = (self.habits.of(index), Sketch::<S>::lane(at));
+            for (&model, lost) in asked.iter().zip(&seen) {
+                of_index[model as usize] = lost[lane];
             }
         }
         Ok((outcomes, roughly))
@@ -137,7 +153,7 @@ impl<T: Term> Ask<'_, T> {
             }
             if self.may_stop(indices, &least)? {
                 // Those not asked are taken to change as those asked did.
-                let share = self.ground.share((nth + 1) * POLL);
+                let share = self.ground.share(&asked[..asked.len().min((nth + 1) * POLL)]);
                 outcomes
                     .extend(indices.iter().zip(least).map(|(_, loss)| Outcome::GivenUp(loss as f64 * unit / share)));
                 return Ok(());

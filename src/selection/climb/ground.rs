@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::{
     ask::Ask,
+    habits::Habits,
     judge::Judge,
     line::Line,
     race::{Bound, Outcome},
@@ -82,28 +83,45 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The losses with each of some indices added.
-    pub(super) fn with(&self, indices: &[u32], bound: &Bound, watch: &dyn Watch) -> Result<Vec<Outcome>, Cancelled> {
+    pub(super) fn with(
+        &self,
+        indices: &[u32],
+        bound: &Bound,
+        habits: &Habits,
+        watch: &dyn Watch,
+    ) -> Result<Vec<Outcome>, Cancelled> {
         if self.selected.is_empty() {
-            return indices.iter().map(|&index| self.alone(index, bound, watch)).collect();
+            return indices.iter().map(|&index| self.alone(index, bound, habits, watch)).collect();
         }
-        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, watch })
+        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, habits, watch })
     }
 
     /// The loss with `index` alone.
-    fn alone(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
+    fn alone(&self, index: u32, bound: &Bound, habits: &Habits, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
         if !T::GROWS {
             return self.exactly(index, bound, watch);
         }
         let judge = self.judge;
+        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
         let (labels, starts) = judge.classes();
         let mut line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()], labels, starts);
-        self.one_by_one(index, bound, watch, |model| {
+        let mut seen = habits.of(index);
+        let mut loss_of = |model| {
             let (looks, gains, mut gained) = (judge.looks_at(model), judge.gains(model), 0);
             let found = |rank: usize| gained += gains[rank];
-            if T::GROWS_EXACTLY && line.find::<T>(model, judge.class_range(model), looks, found) {
+            if !T::GROWS_EXACTLY {
+                return judge.loss(model, line.nearest::<T>(model, looks));
+            }
+            if line.find::<T>(model, judge.class_range(model), looks, found) {
                 return judge.whole(model) - gained;
             }
-            judge.loss(model, line.nearest::<T>(model, looks))
+            nearest.begin(Some(model));
+            self.loss_of(model, &[index], &mut nearest)
+        };
+        self.one_by_one(index, bound, watch, |model| {
+            let loss = loss_of(model);
+            seen[model] = judge.in_brief(loss);
+            loss
         })
     }
 
@@ -152,17 +170,16 @@ impl<'a, T: Term> Ground<'a, T> {
             loss += models.iter().map(|&model| loss_of(model as usize)).sum::<u128>();
             if (loss, index) >= bound.mark() {
                 let asked = (nth + 1) * POLL;
-                return Ok(Outcome::GivenUp(loss as f64 / self.share(asked)));
+                return Ok(Outcome::GivenUp(loss as f64 / self.share(&self.asked[..asked.min(self.asked.len())])));
             }
         }
         Ok(Outcome::Whole(loss))
     }
 
-    /// The share in the whole loss of the first `count` models asked.
-    pub(super) fn share(&self, count: usize) -> f64 {
+    /// The share of some models in the whole loss.
+    pub(super) fn share(&self, asked: &[u32]) -> f64 {
         let loss = |models: &[u32]| models.iter().map(|&model| self.rows[model as usize].loss).sum::<u64>();
-        let asked = loss(&self.asked[..count.min(self.asked.len())]);
-        asked.max(1) as f64 / loss(&self.asked).max(1) as f64
+        loss(asked).max(1) as f64 / loss(&self.asked).max(1) as f64
     }
 }
 
@@ -192,26 +209,28 @@ impl<T: Term> pulp::NullaryFnOnce for LossOf<'_, T> {
     }
 }
 
-/// The loss of one model at the distances `sums`, by how many models are nearer than each of its relatives. None when
-/// equal distances leave open who comes first.
+/// The loss of one model at the distances `sums`, by how many models come before each of its relatives: those that are
+/// nearer, and of those as near the lower ones. None when distances are infinite, as is that of the model itself.
 #[inline(always)]
 fn by_counting(judge: &Judge<'_>, model: usize, sums: &[f64]) -> Option<u128> {
     let relatives = judge.class(model).iter().filter(|&&other| other as usize != model);
-    let mut relatives: Vec<f64> = relatives.map(|&other| sums[other as usize]).collect();
-    relatives.sort_unstable_by(f64::total_cmp);
+    let mut relatives: Vec<(f64, u32)> = relatives.map(|&other| (sums[other as usize], other)).collect();
+    relatives.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let (gains, mut gained) = (judge.gains(model), 0);
-    for relative in relatives {
-        let (mut nearer, mut as_near) = (0_u64, 0_u64);
-        for &sum in sums {
-            nearer += u64::from(sum < relative);
-            as_near += u64::from(sum <= relative);
-        }
-        // Relatives that are farther away rank no higher.
-        let Some(&gain) = gains.get(nearer as usize) else { break };
-        // Itself is as near as itself.
-        if as_near > nearer + 1 {
+    for (sum, relative) in relatives {
+        if sum == f64::INFINITY {
             return None;
         }
+        let (lower, higher) = sums.split_at(relative as usize);
+        let mut before = 0_u64;
+        for &other in lower {
+            before += u64::from(other <= sum);
+        }
+        for &other in higher {
+            before += u64::from(other < sum);
+        }
+        // Relatives that come later rank no higher.
+        let Some(&gain) = gains.get(before as usize) else { break };
         gained += gain;
     }
     Some(judge.whole(model) - gained)

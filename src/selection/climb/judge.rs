@@ -23,6 +23,8 @@ pub(super) struct Judge<'a> {
     /// By class: the same in rough units, with what follows the last rank.
     rough: Vec<[u32; RANKS]>,
     rough_unit: u128,
+    /// Bits that a rough loss has beyond a byte.
+    rough_bits: u32,
 }
 
 /// Into so many units at most is an ADR of 1 cut where losses are rough.
@@ -65,7 +67,9 @@ impl<'a> Judge<'a> {
             credits
         };
         let rough = members.iter().map(rough).collect();
-        Self { cost, exam, recall, members, starts, networks, credits, unit, rough, rough_unit }
+        let most = if cost == Cost::Error { 1 } else { recall.scale() / rough_unit };
+        let rough_bits = (u128::BITS - most.leading_zeros()).saturating_sub(u8::BITS);
+        Self { cost, exam, recall, members, starts, networks, credits, unit, rough, rough_unit, rough_bits }
     }
 
     /// The losses of a [`Sketch`](super::sketch::Sketch) are in these units, rounded down.
@@ -81,6 +85,20 @@ impl<'a> Judge<'a> {
             Cost::Adr => (self.recall.scale() / self.rough_unit) as u32,
         };
         (&self.rough[self.exam.label(asked) as usize], whole)
+    }
+
+    /// The same of a rough loss.
+    pub(super) fn roughly_in_brief(&self, loss: u64) -> u8 {
+        (loss >> self.rough_bits) as u8
+    }
+
+    /// A loss of one model asked in 256ths of the greatest, or up to twice as many.
+    pub(super) fn in_brief(&self, loss: u128) -> u8 {
+        let most = match self.cost {
+            Cost::Error => 1,
+            Cost::Adr => self.recall.scale(),
+        };
+        (loss >> (u128::BITS - most.leading_zeros()).saturating_sub(u8::BITS)) as u8
     }
 
     /// What a relevant model makes good of the loss of a model asked, by rank − 1; beyond, nothing.
@@ -134,14 +152,19 @@ impl<'a> Judge<'a> {
         self.cost
     }
 
-    /// How many models there are.
-    pub(super) fn models(&self) -> u32 {
-        self.exam.len() as u32
-    }
-
     /// Whether a model is of the class of the model asked.
     pub(super) fn related(&self, asked: usize, model: u32) -> bool {
         self.exam.labels()[model as usize] == self.exam.label(asked)
+    }
+
+    /// The class of every model.
+    pub(super) fn labels(&self) -> &[u32] {
+        self.exam.labels()
+    }
+
+    /// The class of a model.
+    pub(super) fn label(&self, model: usize) -> u32 {
+        self.exam.label(model)
     }
 
     /// The models of the same class, the model itself among them, ascending.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::order::ascending;
 use crate::metrics::{Term, before};
 
 /// How much nearer than a model between them a model may seem, because the terms are rounded.
@@ -25,23 +26,16 @@ pub(super) struct Line<'a> {
 impl<'a> Line<'a> {
     /// `starts` holds for each class how many models those before it have.
     pub(super) fn new(values: &'a [f64], labels: &[u32], starts: &[u32]) -> Self {
-        // Integers in the order of the values.
-        let key = |value: f64| {
-            let bits = value.to_bits();
-            bits ^ (((bits as i64 >> 63) as u64) | 1 << 63)
-        };
-        let mut keys: Vec<(u64, u32)> = (0..).zip(values).map(|(model, &value)| (key(value), model)).collect();
-        keys.sort_unstable();
+        let order = ascending(values.len(), |model| values[model]);
         let (mut places, mut among_kin) = (vec![0; values.len()], vec![0; values.len()]);
         let (mut kin, mut next) = (vec![0; values.len()], starts.to_vec());
-        for (place, &(_, model)) in (0..).zip(&keys) {
+        for (place, &model) in (0..).zip(&order) {
             places[model as usize] = place;
             let next = &mut next[labels[model as usize] as usize];
             kin[*next as usize] = place;
             among_kin[model as usize] = *next;
             *next += 1;
         }
-        let order: Vec<u32> = keys.iter().map(|&(_, model)| model).collect();
         let ordered = order.iter().map(|&model| values[model as usize]).collect();
         Self { values, order, ordered, places, kin, among_kin, nearest: Vec::new() }
     }

@@ -1,6 +1,6 @@
 //! What is known of one model under the selection.
 
-use super::judge::Judge;
+use super::{judge::Judge, order::ascending};
 
 /// Strangers that are kept in order.
 pub(super) const NEAR: usize = 48;
@@ -45,18 +45,30 @@ impl Row {
             NEAR => self.near.iter().fold(0.0, |reach, &(_, other)| sums[other as usize].max(reach)),
             _ => f64::INFINITY,
         };
-        self.near.clear();
-        self.far.clear();
-        for (other, &sum) in (0..judge.models()).zip(sums).filter(|&(other, _)| !judge.related(model, other)) {
-            if sum <= reach { &mut self.near } else { &mut self.far }.push((sum, other));
+        // Written always and counted where it belongs: a branch could not be foreseen.
+        self.near.resize(sums.len(), (0.0, 0));
+        self.far.resize(sums.len(), (0.0, 0));
+        let (label, mut near, mut far) = (judge.label(model), 0, 0);
+        for ((other, &of), &sum) in (0..).zip(judge.labels()).zip(sums) {
+            (self.near[near], self.far[far]) = ((sum, other), (sum, other));
+            let (stranger, within) = (usize::from(of != label), usize::from(sum <= reach));
+            near += stranger & within;
+            far += stranger & (1 - within);
         }
-        // Sums are not negative, so that their bits are in their order.
-        let order = |entry: &(f64, u32)| (entry.0.to_bits(), entry.1);
-        if self.near.len() > NEAR {
-            self.near.select_nth_unstable_by_key(NEAR, order);
+        self.near.truncate(near);
+        self.far.truncate(far);
+        if near > 2 * NEAR {
+            // Sums are not negative, so that their bits are in their order.
+            self.near.select_nth_unstable_by_key(NEAR, |&(sum, other)| (sum.to_bits(), other));
             self.far.extend(self.near.drain(NEAR..));
+            self.near.sort_unstable_by_key(|&(_, other)| other);
         }
-        self.near.sort_unstable_by_key(order);
+        let order = ascending(self.near.len(), |at| self.near[at].0);
+        let ordered: Vec<_> = order.into_iter().map(|at| self.near[at as usize]).collect();
+        let (near, others) = ordered.split_at(NEAR.min(ordered.len()));
+        self.near.clear();
+        self.near.extend_from_slice(near);
+        self.far.extend_from_slice(others);
         let relatives = judge.class(model).iter().filter(|&&other| other as usize != model);
         let mut relatives: Vec<f64> = relatives.map(|&other| sums[other as usize]).collect();
         relatives.sort_unstable_by(f64::total_cmp);

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::{
     BEAM, Climb, PATIENCE, Search, Step,
     ground::Ground,
+    habits::Habits,
     judge::Judge,
     race::{Mark, Race},
     sketch::LANES,
@@ -21,7 +22,8 @@ pub(super) fn run<T: Term>(
     watch: &dyn Watch,
 ) -> Result<Climb, Cancelled> {
     let from = Place { ground: Ground::<T>::new(sample, judge), steps: Vec::new(), loss: judge.worst() };
-    let party = Party { judge, race: Race::new(sample.train.cols()), watch };
+    let habits = Habits::new(sample.train.rows(), sample.train.cols());
+    let party = Party { judge, race: Race::new(sample.train.cols()), habits, watch };
     let steps = match search {
         Search::Strict => party.strict(from)?,
         Search::Level => party.level(from)?,
@@ -59,6 +61,7 @@ impl<T: Term> Place<'_, T> {
 struct Party<'a> {
     judge: &'a Judge<'a>,
     race: Race,
+    habits: Habits,
     watch: &'a dyn Watch,
 }
 
@@ -72,11 +75,11 @@ impl Party<'_> {
         keep: usize,
         allowed: impl Fn(u32) -> bool,
     ) -> Result<Vec<Mark>, Cancelled> {
-        let (ground, watch) = (&place.ground, self.watch);
+        let (ground, habits, watch) = (&place.ground, &self.habits, self.watch);
         let mut candidates = if added { ground.outside() } else { ground.selected().to_vec() };
         candidates.retain(|&index| allowed(index));
         if added {
-            self.race.run(&candidates, loss, keep, LANES, |block, bound| ground.with(block, bound, watch))
+            self.race.run(&candidates, loss, keep, LANES, |block, bound| ground.with(block, bound, habits, watch))
         } else {
             self.race.run(&candidates, loss, keep, 1, |block, bound| ground.without(block[0], bound, watch))
         }

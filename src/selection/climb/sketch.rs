@@ -53,11 +53,17 @@ impl<S: Simd> Sketch<S> {
         Self { values: pairs.to_vec(), odd, relatives: Vec::new(), before: Vec::new() }
     }
 
+    /// The lane of the candidate at `at`.
+    #[inline(always)]
+    pub(super) const fn lane(at: usize) -> usize {
+        let half = S::F64_LANES;
+        if at < half { 2 * at + 1 } else { 2 * (at - half) }
+    }
+
     /// The loss of each candidate.
     #[inline(always)]
     pub(super) fn by_candidate(losses: &Losses) -> impl Iterator<Item = u64> {
-        let half = S::F64_LANES;
-        (0..2 * half).map(move |at| losses[if at < half { 2 * at + 1 } else { 2 * (at - half) }])
+        (0..2 * S::F64_LANES).map(move |at| losses[Self::lane(at)])
     }
 
     /// Adds what one model asked loses at least under each of the candidates.
