@@ -200,8 +200,8 @@ impl List {
         &self.models
     }
 
-    /// How many models come before the one at `at` on the list, after each feature of the span; equal sums are ordered by
-    /// model. If they are `looks` or more, there may be others.
+    /// How many models come before the one at `at` on the list, after each feature of the span; equal sums are ordered
+    /// by model. If they are `looks` or more, there may be others.
     #[inline(always)]
     pub(super) fn before<S: Simd>(&self, simd: S, at: usize) -> [u64; SPAN] {
         let mut before = [0; SPAN];

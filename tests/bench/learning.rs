@@ -2,8 +2,8 @@
 //!
 //! On a seeded synthetic sample of the size of SHREC 2007 (285 training models of 19 classes, 95 queries, 500
 //! features), and on CSV files `model,class,role,f1,f2,…`. AdaBoost runs once, as it does in the program: fewer rounds
-//! are a slice of the run. With `--json`, the stages of the files alone, a line of
-//! seconds by stage each: what `against_sklearn.sh` reads.
+//! are a slice of the run. With `--json`, the stages of the files alone, a line of seconds by stage each: what
+//! `against_sklearn.sh` reads.
 
 #![allow(clippy::print_stdout, clippy::unwrap_used)]
 
