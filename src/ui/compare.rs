@@ -138,8 +138,10 @@ fn line(pane: &mut Pane<'_>, y: u16, name: &str, values: [Option<f64>; 4], selec
 
 /// What the differences and p are.
 fn legend(pane: &mut Pane<'_>, y: u16) {
-    let said = "now less the pin; p: McNemar's paired test of ε on D, Q";
-    pane.put(1, y, &text::fit(said, (pane.width() as usize).saturating_sub(2)), Role::Faint);
+    let room = (pane.width() as usize).saturating_sub(2);
+    let long = "now less the pin; p: McNemar's paired test of ε on D, Q";
+    let said = if text::width(long) <= room { long } else { "now less the pin; p: McNemar's test of ε on D, Q" };
+    pane.put(1, y, &text::fit(said, room), Role::Faint);
 }
 
 /// The parameters that differ, now and in each pin.

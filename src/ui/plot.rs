@@ -113,6 +113,7 @@ impl Axis {
         (first..=last.min(first + 100))
             .map(|n| n as f64 * step)
             .map(|tick| (tick, if large { number::short(tick) } else { format!("{tick:.decimals$}") }))
+            .map(|(tick, label)| (tick, label.replacen('-', if tick < 0.0 { "−" } else { "-" }, 1)))
             .collect()
     }
 

@@ -91,7 +91,7 @@ fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
         let room = wide as usize - 4;
         let x =
             list.put(x + 2, y, &text::fit(&spectra.name, room.saturating_sub(text::width(&said).min(24))), Role::Plain);
-        let room = (room + 2).saturating_sub((x - place as u16 % across * wide) as usize);
+        let room = wide.saturating_sub(x - place as u16 % across * wide) as usize;
         list.put(x, y, &text::fit(&said, room), Role::Faint);
     }
 }

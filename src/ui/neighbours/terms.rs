@@ -82,7 +82,8 @@ fn greatest(said: &Said, pane: &mut Pane<'_>) {
     let mut terms = said.terms.clone();
     terms.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
     let mut x = 1;
-    for (index, term) in terms.iter().filter(|(_, term)| *term != 0.0) {
+    // What rounds to nothing, in percent or in hundredths, says nothing.
+    for (index, term) in terms.iter().filter(|(_, term)| term.abs() >= 0.005) {
         let value = if said.percent { format!("{:+.0} %", 100.0 * term) } else { format!("{term:+.2}") };
         let value = value.replace('-', "−");
         let wide = text::width(&value) as u16 + 3 + (index.ilog10() + 1) as u16;

@@ -49,7 +49,7 @@ pub(super) fn draw(state: &State, class: usize, other: usize, pane: &mut Pane<'_
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let room = (rest.width as usize).saturating_sub(2);
-    let words: Vec<String> = apart.strongest().iter().take(60).map(|(index, by)| said(*index, *by)).collect();
+    let words: Vec<String> = bands(&apart.strongest()).iter().take(60).map(said).collect();
     let lines = packed(&words, room);
     let high = (lines.len() as u16).min((rest.height / 3).max(1));
     let below = pane::cut_bottom(&mut rest, high + 1);
@@ -67,9 +67,25 @@ pub(super) fn draw(state: &State, class: usize, other: usize, pane: &mut Pane<'_
     }
 }
 
-fn said(index: u32, by: f64) -> String {
-    let sign = if by < 0.0 { '−' } else { '+' };
-    format!("λ{index} {sign}{:.2}", by.abs())
+/// Eigenvalues in a row that separate as well, to a hundredth: the first, the last, and the hundredths. The strongest
+/// first.
+fn bands(strongest: &[(u32, f64)]) -> Vec<(u32, u32, i32)> {
+    let mut rounded: Vec<(u32, i32)> = strongest.iter().map(|&(at, by)| (at, (100.0 * by).round() as i32)).collect();
+    rounded.sort_by_key(|&(at, by)| (-by.abs(), at));
+    let mut bands: Vec<(u32, u32, i32)> = Vec::new();
+    for (at, by) in rounded {
+        match bands.last_mut() {
+            Some((_, last, same)) if *last + 1 == at && *same == by => *last = at,
+            _ => bands.push((at, at, by)),
+        }
+    }
+    bands
+}
+
+fn said(&(first, last, by): &(u32, u32, i32)) -> String {
+    let sign = if by < 0 { '−' } else { '+' };
+    let by = f64::from(by.abs()) / 100.0;
+    if first == last { format!("λ{first} {sign}{by:.2}") } else { format!("λ{first}–{last} {sign}{by:.2}") }
 }
 
 fn spikes(apart: &Apart, logarithmic: bool) -> Plot {
@@ -86,4 +102,16 @@ fn spikes(apart: &Apart, logarithmic: bool) -> Plot {
     series.sort_by(|a, b| a.points[1].1.abs().total_cmp(&b.points[1].1.abs()));
     let x = Axis::indices(apart.separation.len(), logarithmic);
     Plot { x, y: Axis::linear(-1.0, 1.0), series, marks: Vec::new(), guide: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{bands, said};
+
+    #[test]
+    fn neighbours_that_separate_as_well_are_named_together() {
+        let strongest = [(7, -1.0), (3, 0.998), (9, 0.996), (8, 0.995), (4, -0.904), (5, 0.9), (6, 0.899)];
+        let words: Vec<String> = bands(&strongest).iter().map(said).collect();
+        assert_eq!(words, ["λ3 +1.00", "λ7 −1.00", "λ8–9 +1.00", "λ4 −0.90", "λ5–6 +0.90"]);
+    }
 }
