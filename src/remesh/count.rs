@@ -88,31 +88,24 @@ impl Work<'_> {
 
     /// The so many longest edges, or shortest, with their squared lengths over those aimed at: these first.
     fn edges_by_length(&self, share: usize, longest: bool) -> Result<Vec<(f64, u32)>, Stopped> {
-        // Where a few are wanted, they are sought among those far from the length aimed at, then beyond it.
-        let (far2, beyond2) = if longest { (1.5, 1.0) } else { (0.6, 1.0) };
-        let is_past = |length2: f64, limit: f64| if longest { length2 >= limit } else { length2 <= limit };
-        let (mut edges, mut nearer) = (Vec::new(), Vec::new());
-        for all in [false, true] {
+        // Where a few are wanted, they are sought among those far from the length aimed at.
+        let far2 = if longest { [1.5, 1.0, 0.0] } else { [0.6, 1.0, f64::INFINITY] };
+        let mut edges = Vec::new();
+        for far2 in far2 {
             edges.clear();
-            nearer.clear();
+            let is_far =
+                |length2: f64, aim2: f64| if longest { length2 >= far2 * aim2 } else { length2 <= far2 * aim2 };
             for triangle in 0..self.mesh.triangle_slots() {
                 self.pulse.beat(3 * IDLE)?;
-                if !self.mesh.has(sides(triangle)[0]) {
+                if !self.any_side(triangle, is_far) {
                     continue;
                 }
                 let (lengths2, aims2) = self.lengths2(triangle);
-                let is_edge = self.mesh.is_edges(triangle);
-                for (side, h) in sides(triangle).into_iter().enumerate() {
-                    let (length2, aim2) = (lengths2[side], aims2[side]);
-                    if is_edge[side] & (is_past(length2, beyond2 * aim2) | all) && self.is_edge(h) {
-                        let far = is_past(length2, far2 * aim2);
-                        let place = if far { &mut edges } else { &mut nearer };
-                        place.push((length2 / aim2, h));
+                for (h, (length2, aim2)) in sides(triangle).into_iter().zip(lengths2.into_iter().zip(aims2)) {
+                    if self.is_edge(h) && is_far(length2, aim2) {
+                        edges.push((length2 / aim2, h));
                     }
                 }
-            }
-            if edges.len() < share {
-                edges.append(&mut nearer);
             }
             if edges.len() >= share {
                 break;

@@ -220,7 +220,7 @@ impl<'a> Work<'a> {
     }
 
     /// Whether a triangle has a side that is its edge's, no ghost's maybe, and of such a length.
-    fn any_side(&self, triangle: u32, is_such: impl Fn(f64, f64) -> bool) -> bool {
+    pub(super) fn any_side(&self, triangle: u32, is_such: impl Fn(f64, f64) -> bool) -> bool {
         if !self.mesh.has(sides(triangle)[0]) {
             return false;
         }
