@@ -8,7 +8,6 @@ use super::{
     ground::{Ground, POLL},
     habits::Habits,
     race::{Bound, Outcome},
-    row::NEAR,
     sketch::{self, Sketch},
 };
 use crate::{
@@ -145,7 +144,7 @@ impl<T: Term> Ask<'_, T> {
         for (nth, models) in asked.chunks(POLL).enumerate() {
             for &model in models {
                 let row = &rows[model as usize];
-                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, NEAR);
+                let (losses, sure) = block.losses::<T, LEAST>(simd, model as usize, row, judge, false);
                 add_lanes(&mut least, &losses);
                 if !sure {
                     unsure.push((model, losses));
@@ -162,7 +161,7 @@ impl<T: Term> Ask<'_, T> {
         for models in unsure.chunks(POLL) {
             for &(model, briefly) in models {
                 let row = &rows[model as usize];
-                let (losses, _) = block.losses::<T, LEAST>(simd, model as usize, row, judge, usize::MAX);
+                let (losses, _) = block.losses::<T, LEAST>(simd, model as usize, row, judge, true);
                 for ((least, briefly), loss) in least.iter_mut().zip(briefly).zip(losses) {
                     *least += loss - briefly;
                 }
@@ -175,7 +174,7 @@ impl<T: Term> Ask<'_, T> {
         let mut most = [0; LANES];
         for &model in asked {
             let row = &rows[model as usize];
-            let (losses, _) = block.losses::<T, MOST>(simd, model as usize, row, judge, usize::MAX);
+            let (losses, _) = block.losses::<T, MOST>(simd, model as usize, row, judge, true);
             add_lanes(&mut most, &losses);
         }
         let unit = judge.unit();

@@ -44,8 +44,8 @@ impl<S: Simd> Block<S> {
         Self { values: S::as_simd_f64s(&values).0.to_vec(), relatives: Vec::new(), before: Vec::new() }
     }
 
-    /// The losses of one model asked under each of the candidates, when at most `depth` strangers are looked at. True
-    /// when that was enough to know them; otherwise they are at least so much.
+    /// The losses of one model asked under each of the candidates, when of the strangers only those in order are looked
+    /// at or, if `all`, the others, too. True when that was enough to know them; otherwise they are at least so much.
     #[inline(always)]
     pub(super) fn losses<T: Term, const TIES: bool>(
         &mut self,
@@ -53,7 +53,7 @@ impl<S: Simd> Block<S> {
         asked: usize,
         row: &Row,
         judge: &Judge<'_>,
-        depth: usize,
+        all: bool,
     ) -> (Losses, bool) {
         self.relatives.clear();
         for &model in judge.class(asked) {
@@ -61,9 +61,18 @@ impl<S: Simd> Block<S> {
                 self.relatives.push(self.sums::<T>(simd, asked, (row.sums[model as usize], model)));
             }
         }
-        match judge.cost() {
-            Cost::Error => self.errors::<T, TIES>(simd, asked, row, depth),
-            Cost::Adr => self.recall::<T, TIES>(simd, asked, row, judge, depth),
+        let strangers = judge.models() - judge.class(asked).len();
+        let (mut far, mut again): (&[_], _) = (&[], all);
+        loop {
+            let whole = row.near.len() + far.len() == strangers;
+            let found = match judge.cost() {
+                Cost::Error => self.errors::<T, TIES>(simd, asked, row.chunks(far, 1), whole),
+                Cost::Adr => self.recall::<T, TIES>(simd, asked, judge, row.chunks(far, CHUNK), whole),
+            };
+            if found.1 || !again {
+                return found;
+            }
+            (far, again) = (row.far(asked, judge), false);
         }
     }
 
@@ -75,14 +84,20 @@ impl<S: Simd> Block<S> {
 
     /// A loss of 1 where a stranger comes before the nearest relative.
     #[inline(always)]
-    fn errors<T: Term, const TIES: bool>(&self, simd: S, asked: usize, row: &Row, depth: usize) -> (Losses, bool) {
+    fn errors<'a, T: Term, const TIES: bool>(
+        &self,
+        simd: S,
+        asked: usize,
+        strangers: impl Iterator<Item = (f64, &'a [(f64, u32)])>,
+        whole: bool,
+    ) -> (Losses, bool) {
         let nearest = simd.splat_f64s(f64::INFINITY);
         let nearest = self.relatives.iter().fold(nearest, |nearest, &sums| simd.min_f64s(nearest, sums));
         let reach = simd.reduce_max_f64s(nearest);
         // Without relatives or strangers nothing right is there to be found.
         let mut right = simd.less_than_f64s(nearest, simd.splat_f64s(f64::INFINITY));
-        let mut sure = depth >= row.strangers();
-        for (from, chunk) in row.chunks(1).take(depth) {
+        let mut sure = whole;
+        for (from, chunk) in strangers {
             if from > reach || none::<S>(simd, right) {
                 sure = true;
                 break;
@@ -107,19 +122,20 @@ impl<S: Simd> Block<S> {
 
     /// What the ADR lacks of 1.
     #[inline(always)]
-    fn recall<T: Term, const TIES: bool>(
+    fn recall<'a, T: Term, const TIES: bool>(
         &mut self,
         simd: S,
         asked: usize,
-        row: &Row,
         judge: &Judge<'_>,
-        depth: usize,
+        strangers: impl Iterator<Item = (f64, &'a [(f64, u32)])>,
+        whole: bool,
     ) -> (Losses, bool) {
         if self.relatives.is_empty() {
             return ([0; LANES], true);
         }
         self.sort(simd, judge.network(asked));
-        let (live, sure) = self.count::<T, TIES>(simd, asked, row, depth);
+        let (live, sure) = self.count::<T, TIES>(simd, asked, strangers);
+        let sure = sure || whole;
         let (weights, whole) = judge.credits(asked);
         let mut losses = [whole; LANES];
         for (nth, before) in self.before[..live].iter().enumerate() {
@@ -142,15 +158,20 @@ impl<S: Simd> Block<S> {
     }
 
     /// Counts, for each relative, the strangers before it. Returns how many of the nearest relatives are among the
-    /// first Q of any lane, and false when more than `depth` strangers would have to be looked at.
+    /// first Q of any lane, and false when there may be strangers before them that were not among those counted.
     #[inline(always)]
-    fn count<T: Term, const TIES: bool>(&mut self, simd: S, asked: usize, row: &Row, depth: usize) -> (usize, bool) {
+    fn count<'a, T: Term, const TIES: bool>(
+        &mut self,
+        simd: S,
+        asked: usize,
+        chunks: impl Iterator<Item = (f64, &'a [(f64, u32)])>,
+    ) -> (usize, bool) {
         let count = self.relatives.len();
         self.before.clear();
         self.before.resize(count, simd.splat_u64s(0));
         // The relatives before `first` are nearer than any stranger left.
         let (mut first, mut live) = (0, count);
-        for (nth, (from, chunk)) in row.chunks(CHUNK).enumerate() {
+        for (from, chunk) in chunks {
             while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
                 live -= 1;
             }
@@ -160,9 +181,6 @@ impl<S: Simd> Block<S> {
             }
             if first == live {
                 return (live, true);
-            }
-            if nth * CHUNK >= depth {
-                return (live, false);
             }
             let mut strangers = [simd.splat_f64s(f64::INFINITY); CHUNK];
             for (sums, &stranger) in strangers.iter_mut().zip(chunk) {
@@ -179,7 +197,7 @@ impl<S: Simd> Block<S> {
                 }
             }
         }
-        (live, true)
+        (live, false)
     }
 
     /// The lanes in which the relative at `at` is still among the first Q.

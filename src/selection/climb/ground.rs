@@ -76,7 +76,11 @@ impl<'a, T: Term> Ground<'a, T> {
             let (sums, features) = (&mut row.sums[..], &sample.train);
             let refresh = Refresh::<T> { sums, columns, features, model, selected, added, term: PhantomData };
             pulp::Arch::new().dispatch(refresh);
-            row.update(model, judge);
+            if selected.is_empty() {
+                row.forget();
+            } else {
+                row.update(model, judge);
+            }
         });
         let rows = &self.rows;
         self.asked.sort_unstable_by_key(|&model| (std::cmp::Reverse(rows[model as usize].loss), model));

@@ -157,6 +157,11 @@ impl<'a> Judge<'a> {
         self.exam.labels()[model as usize] == self.exam.label(asked)
     }
 
+    /// How many models there are.
+    pub(super) const fn models(&self) -> usize {
+        self.exam.len()
+    }
+
     /// The class of every model.
     pub(super) fn labels(&self) -> &[u32] {
         self.exam.labels()
