@@ -14,6 +14,26 @@ pub(super) type Square = [Row; WIDTH];
 /// Rows that stay in the first cache while all blocks of a basis pass by.
 const TILE: usize = 128;
 
+impl Product {
+    /// A row of B x.
+    #[inline(always)]
+    pub(super) fn row<L: Lanes>(&self, lanes: L, x: &[Row], at: usize) -> L::Reg {
+        match self {
+            Self::Unit => lanes.load(&x[at]),
+            Self::Diagonal(values) => lanes.mul(lanes.load(&x[at]), lanes.splat(values[at])),
+            Self::Rows(starts, entries) => {
+                let mut sum = lanes.zero();
+                for entries in &entries[starts[at] as usize..starts[at + 1] as usize] {
+                    for (&column, &value) in entries.columns.iter().zip(&entries.values) {
+                        sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
+                    }
+                }
+                sum
+            }
+        }
+    }
+}
+
 /// `to = B x`; returns xᵀBx.
 pub(super) struct Multiply<'a> {
     pub mass: &'a Product,
@@ -28,33 +48,11 @@ impl Kernel for Multiply<'_> {
     fn run<L: Lanes>(self, lanes: L) -> Square {
         let Self { mass, x, to } = self;
         let mut gram = [lanes.zero(); WIDTH];
-        let mut store = |at: usize, sum: L::Reg, own: &Row| {
-            to[at] = lanes.row(sum);
+        for (at, (own, to)) in x.iter().zip(to).enumerate() {
+            let sum = mass.row(lanes, x, at);
+            *to = lanes.row(sum);
             for (gram, &own) in gram.iter_mut().zip(own) {
                 *gram = lanes.add_mul(*gram, lanes.splat(own), sum);
-            }
-        };
-        match mass {
-            Product::Unit => {
-                for (at, own) in x.iter().enumerate() {
-                    store(at, lanes.load(own), own);
-                }
-            }
-            Product::Diagonal(values) => {
-                for (at, (own, &value)) in x.iter().zip(values).enumerate() {
-                    store(at, lanes.mul(lanes.load(own), lanes.splat(value)), own);
-                }
-            }
-            Product::Rows(starts, entries) => {
-                for (at, own) in x.iter().enumerate() {
-                    let mut sum = lanes.zero();
-                    for entries in &entries[starts[at] as usize..starts[at + 1] as usize] {
-                        for (&column, &value) in entries.columns.iter().zip(&entries.values) {
-                            sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
-                        }
-                    }
-                    store(at, sum, own);
-                }
             }
         }
         gram.map(|sum| lanes.row(sum))

@@ -4,14 +4,17 @@
 //! nearest to σ on both sides come first. The basis is kept [orthogonal], because what is lost there comes back as
 //! copies of eigenvalues.
 
-use self::projected::{cholesky, product, projected};
 pub(super) use self::random::Random;
+use self::{
+    orthogonal::FIRST,
+    projected::{cholesky, product, projected},
+};
 use super::{
     block::{Combine, Dots, Multiply, Recur, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
     panel::{Normalise, Panel, panels},
-    pencil::{Pencil, Product},
+    pencil::Pencil,
     poll::{Poll, Stop},
     small::{eigen, identity},
     timings::Cost,
@@ -36,7 +39,7 @@ const ROUNDS: usize = 7;
 /// Memory that one run leaves to the next.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// The basis in single precision, and B times it, unless B is the identity.
+    /// The basis in single precision, and B times its first blocks.
     blocks: Vec<Vec<Panel>>,
     images: Vec<Vec<Panel>>,
     /// The basis in double precision.
@@ -267,7 +270,8 @@ impl<'a> Krylov<'a> {
     fn normalise(&mut self, at: usize, poll: &mut Poll) -> Result<Square, Stop> {
         let (total, inverse) = self.decompose(at, STRICTLY, poll)?;
         let Scratch { blocks, images, next, work, mass, newest, .. } = &mut *self.scratch;
-        let room = |list: &mut Vec<Vec<Panel>>, count: usize| {
+        let count = panels(work.rows().len());
+        let room = |list: &mut Vec<Vec<Panel>>| {
             if list.len() == at {
                 list.push(Vec::new());
             }
@@ -275,11 +279,10 @@ impl<'a> Krylov<'a> {
         };
         let mut single: [&mut [Panel]; 2] = [&mut [], &mut []];
         if matches!(self.basis, Basis::Single) {
-            let count = panels(work.rows().len());
-            room(blocks, count);
+            room(blocks);
             single[0] = &mut blocks[at];
-            if !matches!(self.pencil.mass, Product::Unit) {
-                room(images, count);
+            if at < FIRST {
+                room(images);
                 single[1] = &mut images[at];
             }
         }

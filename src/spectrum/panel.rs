@@ -8,6 +8,7 @@
 use super::{
     block::Square,
     lanes::{Kernel, Lanes, Row, WIDTH},
+    pencil::Product,
 };
 
 /// Rows in a panel.
@@ -78,12 +79,13 @@ impl Kernel for Normalise<'_> {
 /// Panels of both factors that stay in the first cache.
 const TILE: usize = 16;
 
-/// Sets the i-th square to Vᵢᵀ t for every block of a basis, after `t −= U M` if such a pair is given.
+/// Sets the i-th square to `Vᵢᵀ B w` for every block of a basis, or to `Vᵢᵀ (B w − U M)` if such a pair is given.
 ///
 /// Products are summed in single precision over the rows of a tile, and in double precision over the tiles.
 pub(super) struct PanelDots<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
-    pub t: &'a mut [Row],
+    pub mass: &'a Product,
+    pub w: &'a [Row],
     /// U and M.
     pub less: Option<(&'a [Row], &'a Square)>,
     /// 64 rows for each block.
@@ -96,25 +98,28 @@ impl Kernel for PanelDots<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, t, less, room, sums } = self;
+        let Self { basis, mass, w, less, room, sums } = self;
         let factor: Option<[L::Reg; WIDTH]> = less.map(|(_, factor)| std::array::from_fn(|at| lanes.load(&factor[at])));
         room.clear();
         room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
         let mut tile = [Panel::default(); TILE];
-        for (at, rows) in t.chunks_mut(TILE * ROWS).enumerate() {
+        let mut group = [[0.0; WIDTH]; ROWS];
+        for at in 0..w.len().div_ceil(TILE * ROWS) {
+            let rows = at * TILE * ROWS..w.len().min((at + 1) * TILE * ROWS);
             let used = panels(rows.len());
             let tile = &mut tile[..used];
-            if let (Some((u, _)), Some(factor)) = (less, factor) {
-                for (row, u) in rows.iter_mut().zip(&u[at * TILE * ROWS..]) {
-                    let mut sum = lanes.load(row);
-                    for (&factor, &value) in factor.iter().zip(u) {
-                        sum = lanes.sub_mul(sum, lanes.splat(value), factor);
+            for (panel, first) in tile.iter_mut().zip(rows.step_by(ROWS)) {
+                let group = &mut group[..ROWS.min(w.len() - first)];
+                for (to, row) in group.iter_mut().zip(first..) {
+                    let mut sum = mass.row(lanes, w, row);
+                    if let (Some((u, _)), Some(factor)) = (less, factor) {
+                        for (&factor, &value) in factor.iter().zip(&u[row]) {
+                            sum = lanes.sub_mul(sum, lanes.splat(value), factor);
+                        }
                     }
-                    *row = lanes.row(sum);
+                    *to = lanes.row(sum);
                 }
-            }
-            for (panel, rows) in tile.iter_mut().zip(rows.chunks(ROWS)) {
-                panel.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
+                panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
             }
             let range = at * TILE..at * TILE + used;
             for (block, total) in basis.iter().zip(room.chunks_mut(WIDTH * WIDTH)) {
@@ -171,11 +176,16 @@ fn dots<L: Lanes, const M: usize, const N: usize>(
 /// Panels that are read from one block after the other: as much as the hardware fetches ahead.
 const PAGE: usize = 8;
 
-/// `w −= Σ Vᵢ Cᵢ` over the blocks of a basis, for C so small that single precision is enough for the sum.
+/// `w −= Σ Vᵢ Cᵢ` over the blocks of a basis, for C so small that single precision is enough for the sum, and
+/// `w −= U M` if such a pair is given.
+///
+/// It goes from the end to the beginning, for the end of the basis is what the cache has of it after [`PanelDots`].
 pub(super) struct PanelUpdate<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
     pub factors: &'a [[[f32; WIDTH]; WIDTH]],
     pub w: &'a mut [Row],
+    /// U and M.
+    pub less: Option<(&'a [Row], &'a Square)>,
 }
 
 impl Kernel for PanelUpdate<'_, '_> {
@@ -183,9 +193,11 @@ impl Kernel for PanelUpdate<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, factors, w } = self;
+        let Self { basis, factors, w, less } = self;
+        let less: Option<(&[Row], [L::Reg; WIDTH])> =
+            less.map(|(u, factor)| (u, std::array::from_fn(|at| lanes.load(&factor[at]))));
         let mut sums = [Panel::default(); PAGE];
-        for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate() {
+        for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate().rev() {
             let first = at * PAGE;
             let sums = &mut sums[..panels(w.len())];
             sums.fill(Panel::default());
@@ -208,10 +220,16 @@ impl Kernel for PanelUpdate<'_, '_> {
                     }
                 }
             }
-            for (w, sum) in w.chunks_mut(ROWS).zip(sums) {
+            for ((group, w), sum) in (first..).zip(w.chunks_mut(ROWS)).zip(sums) {
                 let change = lanes.rows(std::array::from_fn(|at| lanes.wide(&sum.0[at])));
-                for (w, change) in w.iter_mut().zip(change) {
-                    *w = lanes.row(lanes.sub(lanes.load(w), change));
+                for ((row, w), change) in (group * ROWS..).zip(w).zip(change) {
+                    let mut left = lanes.sub(lanes.load(w), change);
+                    if let Some((u, factor)) = less {
+                        for (&factor, &value) in factor.iter().zip(&u[row]) {
+                            left = lanes.sub_mul(left, lanes.splat(value), factor);
+                        }
+                    }
+                    *w = lanes.row(left);
                 }
             }
         }

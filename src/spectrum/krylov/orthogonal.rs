@@ -17,7 +17,7 @@ use crate::spectrum::{
 
 /// The first blocks, which every step is made orthogonal to: they hold the eigenvectors nearest to the shift, along
 /// which losses grow a hundredfold in a step where they grow tenfold along others.
-const FIRST: usize = 3;
+pub(super) const FIRST: usize = 3;
 
 /// Where orthogonalisation to the others took less than this share out of a block, the next step may leave them to the
 /// step after it.
@@ -39,18 +39,25 @@ impl Krylov<'_> {
         known: Option<&Square>,
         poll: &mut Poll,
     ) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, images, exact, now, work, mass, room, .. } = &mut *self.scratch;
+        let Scratch { blocks: basis, images, exact, now, work, mass, newest, room, .. } = &mut *self.scratch;
         let mut sums = Vec::new();
         match self.basis {
             Basis::Single => {
                 let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
-                let images: Vec<&[Panel]> = images.iter().take(blocks).map(Vec::as_slice).collect();
-                let dual = if matches!(self.pencil.mass, Product::Unit) { &basis } else { &images };
-                let less = known.map(|alpha| (now.rows(), alpha));
-                dispatch(PanelDots { basis: dual, t: work.rows_mut(), less, room, sums: &mut sums });
+                // VᵀBw is (BV)ᵀw where there is BV, and else Vᵀ(Bw).
+                let (w, sums) = (work.rows(), &mut sums);
+                if blocks <= FIRST {
+                    let images: Vec<&[Panel]> = images[..blocks].iter().map(Vec::as_slice).collect();
+                    let less = known.map(|alpha| (now.rows(), alpha));
+                    dispatch(PanelDots { basis: &images, mass: &Product::Unit, w, less, room, sums });
+                } else {
+                    let less = known.map(|alpha| (newest.rows(), alpha));
+                    dispatch(PanelDots { basis: &basis, mass: &self.pencil.mass, w, less, room, sums });
+                }
                 poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
                 let single: Vec<_> = sums.iter().map(|sum| sum.map(|row| row.map(|value| value as f32))).collect();
-                dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut() });
+                let less = known.map(|alpha| (now.rows(), alpha));
+                dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut(), less });
                 poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
             }
             Basis::Double(locked) => {
