@@ -16,6 +16,7 @@ use clap::Parser as _;
 
 use self::args::{Arguments, Command};
 pub use self::exit::Exit;
+use crate::query::map_large_blocks;
 
 mod args;
 mod cache;
@@ -35,6 +36,7 @@ mod synth;
 /// Runs the program.
 #[must_use]
 pub fn run() -> ExitCode {
+    map_large_blocks();
     let exit = match Arguments::try_parse() {
         Ok(arguments) => exit::conclude(dispatch(arguments)),
         Err(error) => exit::explain(&error),

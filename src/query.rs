@@ -21,6 +21,7 @@ pub use self::{
 };
 
 pub(crate) use self::{
+    heap::map_large_blocks,
     inquiry::{Members, Piece},
     pool::News,
 };
