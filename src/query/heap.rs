@@ -1,10 +1,11 @@
 //! The process's memory: how much it has, and what is free given back to the system.
 
-/// Has every large block mapped by itself, so that it goes back to the system where it is freed; for the whole process.
+/// Has every large block mapped by itself, so that it goes back to the system when it is freed; for the whole process.
 ///
-/// Left to itself the GNU C library raises the size from which it does so up to 32 MB, and each thread's heap then keeps
-/// the blocks of the largest mesh that it has solved. On SHREC 2007 with four threads this is a tenth of the most that
-/// the process has, and half of what it has afterwards. To map the blocks anew for each mesh costs no time to speak of.
+/// Left to itself the GNU C library raises the size from which it does so up to 32 MB, and each thread's heap then
+/// keeps the blocks of the largest mesh that it has solved. On SHREC 2007 with four threads this is a tenth of the most
+/// that the process has, and half of what it has afterwards. To map the blocks anew for each mesh costs no time to
+/// speak of.
 pub(crate) fn map_large_blocks() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
