@@ -64,7 +64,7 @@ pub fn questions(state: &State) -> Vec<Question> {
         View::Confusion => vec![Question::Decisions(method)],
         View::Curves if experiment::asks_retrieval(state) => vec![Question::Retrieval],
         // The paired tests need what every method decides, here and for each pin.
-        View::Compare if !state.pins.is_empty() => pins::questions(),
+        View::Compare | View::Tables if !state.pins.is_empty() => pins::questions(),
         View::Neighbours => state.model().map(|model| Question::Reasons { method, model }).into_iter().collect(),
         _ => Vec::new(),
     }
@@ -260,6 +260,12 @@ mod tests {
             state.view = view;
             let none = !matches!(view, View::Confusion);
             assert_eq!(questions(&state).is_empty(), none, "{view:?}");
+        }
+        // The differences to pins stand in two views, and so do their paired tests.
+        pins::pin(&mut state).unwrap();
+        for view in [View::Tables, View::Compare] {
+            state.view = view;
+            assert_eq!(questions(&state), pins::questions(), "{view:?}");
         }
     }
 }
