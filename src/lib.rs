@@ -10,7 +10,7 @@
 //! | floor | module | what lives there |
 //! |---|---|---|
 //! | 0 | [`watch`] | how a long computation tells its progress and learns that it was cancelled |
-//! | 0 | [`figure`] | figures for print: axes, curves, marks, maps; SVG and PNG |
+//! | 0 | [`figure`] | figures for print: axes, curves, marks, maps; SVG and PNG, and sixels for the screen |
 //! | 0 | [`mesh`] | the triangle mesh as a value: readers, checks, content hash, the procedural shape generator |
 //! | 1 | [`remesh`] | mesh → a mesh of the same surface with a given number of vertices, evenly spread |
 //! | 1 | [`laplacian`] | mesh → stiffness matrix L and mass matrix B |

@@ -4,8 +4,7 @@
 ///
 /// Left to itself the GNU C library raises the size from which it does so up to 32 MB, and each thread's heap then
 /// keeps the blocks of the largest mesh that it has solved. On SHREC 2007 with four threads this is a tenth of the most
-/// that the process has, and half of what it has afterwards. To map the blocks anew for each mesh costs no time to
-/// speak of.
+/// that the process has, and half of what it has afterwards.
 pub(crate) fn map_large_blocks() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
@@ -19,8 +18,7 @@ pub(crate) fn map_large_blocks() {
 
 /// Gives back what this process's allocator holds and nobody uses.
 ///
-/// The GNU C library keeps what a thread has freed for that thread. A solve takes and frees tens of megabytes, so that
-/// after the 380 models of SHREC 2007 four threads held 0.5 GB beside 0.1 GB in use.
+/// The GNU C library keeps what a thread has freed for that thread, but for [large blocks](map_large_blocks).
 pub(super) fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {

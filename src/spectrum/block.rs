@@ -14,6 +14,12 @@ pub(super) type Square = [Row; WIDTH];
 /// Rows that stay in the first cache while all blocks of a basis pass by.
 const TILE: usize = 128;
 
+/// A row less a row of U times M, `factor` holding the rows of M.
+#[inline(always)]
+pub(super) fn less<L: Lanes>(lanes: L, from: L::Reg, u: &Row, factor: &[L::Reg; WIDTH]) -> L::Reg {
+    factor.iter().zip(u).fold(from, |left, (&factor, &value)| lanes.sub_mul(left, lanes.splat(value), factor))
+}
+
 impl Product {
     /// A row of B x.
     #[inline(always)]
@@ -110,11 +116,7 @@ impl Kernel for Update<'_, '_> {
                 let block = &block[first..first + w.len()];
                 let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
                 for (w, row) in w.iter_mut().zip(block) {
-                    let mut sum = lanes.load(w);
-                    for (&factor, &value) in factor.iter().zip(row) {
-                        sum = lanes.sub_mul(sum, lanes.splat(value), factor);
-                    }
-                    *w = lanes.row(sum);
+                    *w = lanes.row(less(lanes, lanes.load(w), row, &factor));
                 }
             }
         }
@@ -162,10 +164,7 @@ impl Kernel for Recur<'_> {
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
         let mut sums = [lanes.zero(); WIDTH];
         for ((w, past), newest) in w.iter_mut().zip(past).zip(newest) {
-            let mut sum = lanes.load(w);
-            for (&factor, &value) in factor.iter().zip(past) {
-                sum = lanes.sub_mul(sum, lanes.splat(value), factor);
-            }
+            let sum = less(lanes, lanes.load(w), past, &factor);
             *w = lanes.row(sum);
             for (sums, &value) in sums.iter_mut().zip(newest) {
                 *sums = lanes.add_mul(*sums, lanes.splat(value), sum);

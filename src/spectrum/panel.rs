@@ -6,7 +6,7 @@
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 use super::{
-    block::Square,
+    block::{self, Square},
     lanes::{Kernel, Lanes, Row, WIDTH},
     pencil::Product,
 };
@@ -99,7 +99,7 @@ impl Kernel for PanelDots<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { basis, mass, w, less, room, sums } = self;
-        let factor: Option<[L::Reg; WIDTH]> = less.map(|(_, factor)| std::array::from_fn(|at| lanes.load(&factor[at])));
+        let pair = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
         room.clear();
         room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
         let mut tile = [Panel::default(); TILE];
@@ -112,10 +112,8 @@ impl Kernel for PanelDots<'_, '_> {
                 let group = &mut group[..ROWS.min(w.len() - first)];
                 for (to, row) in group.iter_mut().zip(first..) {
                     let mut sum = mass.row(lanes, w, row);
-                    if let (Some((u, _)), Some(factor)) = (less, factor) {
-                        for (&factor, &value) in factor.iter().zip(&u[row]) {
-                            sum = lanes.sub_mul(sum, lanes.splat(value), factor);
-                        }
+                    if let Some((u, factor)) = &pair {
+                        sum = block::less(lanes, sum, &u[row], factor);
                     }
                     *to = lanes.row(sum);
                 }
@@ -194,8 +192,7 @@ impl Kernel for PanelUpdate<'_, '_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { basis, factors, w, less } = self;
-        let less: Option<(&[Row], [L::Reg; WIDTH])> =
-            less.map(|(u, factor)| (u, std::array::from_fn(|at| lanes.load(&factor[at]))));
+        let pair = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
         let mut sums = [Panel::default(); PAGE];
         for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate().rev() {
             let first = at * PAGE;
@@ -224,10 +221,8 @@ impl Kernel for PanelUpdate<'_, '_> {
                 let change = lanes.rows(std::array::from_fn(|at| lanes.wide(&sum.0[at])));
                 for ((row, w), change) in (group * ROWS..).zip(w).zip(change) {
                     let mut left = lanes.sub(lanes.load(w), change);
-                    if let Some((u, factor)) = less {
-                        for (&factor, &value) in factor.iter().zip(&u[row]) {
-                            left = lanes.sub_mul(left, lanes.splat(value), factor);
-                        }
+                    if let Some((u, factor)) = &pair {
+                        left = block::less(lanes, left, &u[row], factor);
                     }
                     *w = lanes.row(left);
                 }

@@ -138,6 +138,6 @@ impl Krylov<'_> {
 }
 
 /// The norm of a column of squares that stand on each other.
-fn norm(squares: &[Square], column: usize) -> f64 {
+pub(super) fn norm(squares: &[Square], column: usize) -> f64 {
     squares.iter().flatten().map(|row| row[column] * row[column]).sum::<f64>().sqrt()
 }
