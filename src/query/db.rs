@@ -251,7 +251,7 @@ pub(crate) fn spectrum<'db>(db: &'db dyn Db, key: SpectrumKey<'db>) -> Result<Ar
     let file = key.file(db);
     let found = facts(db, file).and_then(|facts| {
         let file = file_at(db, file)?;
-        match db.library().spectrum(file, &facts, key.problem(db), key.count(db), db.revoked()) {
+        match db.library().spectrum(file, (&facts, None), key.problem(db), key.count(db), db.revoked()) {
             Ok(found) => Ok(found.spectrum),
             Err(Missing::Failed(reason) | Missing::Unread(reason)) => Err(reason),
             Err(Missing::Cancelled) => leave(db),

@@ -14,7 +14,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-pub(super) use self::reading::prepare;
+pub(super) use self::reading::{prepare, read};
 use super::{
     Problem, Source, Stage,
     costs::Costs,
@@ -42,12 +42,30 @@ pub struct Facts {
     pub survey: Survey,
 }
 
+impl Facts {
+    /// Fails where no spectrum can be had of the mesh.
+    pub(super) fn admit(&self) -> Result<(), Missing> {
+        self.survey.refusal().map_or(Ok(()), |refusal| Err(Missing::Failed(refusal.into())))
+    }
+}
+
 /// A mesh file at one moment: where it is and what is in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FileAt<'a> {
     pub(crate) path: &'a Path,
     pub(crate) format: Format,
     pub(crate) content: ContentHash,
+}
+
+/// A file that was looked into.
+#[derive(Debug)]
+pub(crate) struct Examined {
+    /// The hash of its bytes.
+    pub(crate) content: ContentHash,
+    /// What is known of its mesh.
+    pub(crate) facts: Arc<Facts>,
+    /// The mesh in its canonical form, where it had to be read for that.
+    pub(crate) mesh: Option<Mesh>,
 }
 
 /// A spectrum and how it was come by.
@@ -164,19 +182,18 @@ impl Library {
         }
     }
 
-    /// At least `count` eigenvalues of the mesh in `file`, or all it has.
+    /// At least `count` eigenvalues of the mesh in `file`, or all it has. It is read where `mesh` is none and no
+    /// spectrum is known.
     pub(crate) fn spectrum(
         &self,
         file: FileAt<'_>,
-        facts: &Facts,
+        (facts, mesh): (&Facts, Option<Mesh>),
         problem: Problem,
         count: usize,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
-        if let Some(refusal) = facts.survey.refusal() {
-            return Err(Missing::Failed(refusal.into()));
-        }
-        self.made((facts.geometry, problem), count, &|| prepare(file, problem, watch), watch)
+        facts.admit()?;
+        self.made((facts.geometry, problem), count, || prepare(file, mesh, problem, watch), watch)
     }
 
     /// At least `count` eigenvalues of a mesh that is in no file, or all it has: known under its geometry, as if it
@@ -188,8 +205,7 @@ impl Library {
         count: usize,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
-        let prepare = || Ok(problem.prepare(mesh.canonical(), watch)?);
-        self.made((mesh.hash(), problem), count, &prepare, watch)
+        self.made((mesh.hash(), problem), count, || Ok(problem.prepare(mesh.canonical(), watch)?), watch)
     }
 
     /// The spectrum from memory or the store, else of the mesh that `prepare` makes.
@@ -197,16 +213,14 @@ impl Library {
         &self,
         name: (GeometryHash, Problem),
         count: usize,
-        prepare: &dyn Fn() -> Result<Mesh, Missing>,
+        prepare: impl FnOnce() -> Result<Mesh, Missing>,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
         if let Some(known) = self.claim(name, count, watch)? {
             return Ok(known);
         }
-        let found = self.find(name, count, prepare, watch);
-        self.memory().solving.remove(&name);
-        self.0.solved.notify_all();
-        found
+        let _claim = Claim { library: self, name };
+        self.find(name, count, prepare, watch)
     }
 
     /// The spectrum from memory, or none and the right to make it. Waits while another thread makes it.
@@ -235,7 +249,7 @@ impl Library {
         &self,
         name: (GeometryHash, Problem),
         count: usize,
-        prepare: &dyn Fn() -> Result<Mesh, Missing>,
+        prepare: impl FnOnce() -> Result<Mesh, Missing>,
         watch: &dyn Watch,
     ) -> Result<Found, Missing> {
         let start = Instant::now();
@@ -316,6 +330,19 @@ impl Library {
     }
 }
 
+/// The right to make a spectrum. Given back when it is dropped, by a panic too: else all others would wait for ever.
+struct Claim<'a> {
+    library: &'a Library,
+    name: (GeometryHash, Problem),
+}
+
+impl Drop for Claim<'_> {
+    fn drop(&mut self) {
+        self.library.memory().solving.remove(&self.name);
+        self.library.0.solved.notify_all();
+    }
+}
+
 fn suffices(spectrum: &Spectrum, count: usize) -> bool {
     spectrum.count() >= count.min(spectrum.order)
 }
@@ -330,7 +357,7 @@ mod tests {
         mesh::{self, synth},
         spectrum::Choice,
         store,
-        watch::Unwatched,
+        watch::{Patience, Unwatched},
     };
 
     /// Cancels once the first eigenvalues are there.
@@ -363,7 +390,7 @@ mod tests {
             let content = library.content(&path, Stamp::of(&path).unwrap()).unwrap();
             let file = FileAt { path: &path, format: Format::Obj, content };
             let facts = library.facts(file).unwrap();
-            library.spectrum(file, &facts, choice.into(), count, watch)
+            library.spectrum(file, (&facts, None), choice.into(), count, watch)
         };
         assert!(matches!(ask(&open(), &AfterSome::default()), Err(Missing::Cancelled)));
         let begun = store::stats(&folder.path().join("cache")).unwrap();
@@ -372,5 +399,17 @@ mod tests {
         let direct = spectrum::solve(&mesh.canonical(), choice, count, &[], &Unwatched).unwrap();
         assert_eq!(resumed.spectrum.eigenvalues(), direct.eigenvalues());
         assert!(matches!(ask(&open(), &Unwatched), Ok(Found { source: Source::Disk, .. })));
+    }
+
+    #[test]
+    fn a_panic_gives_back_the_right_to_make_a_spectrum() {
+        let library = Library::open(Store::none(), Trace::default(), Path::new(""));
+        let mesh = synth::generate(&synth::Options::default(), 0, 0).unwrap();
+        let name = (mesh.hash(), Choice::default().into());
+        let make = || library.made(name, 5, || panic!("a defect"), &Unwatched);
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).is_err());
+        // Cancels if it would wait.
+        let found = library.made(name, 5, || Ok(mesh.canonical()), &Patience::of(2000)).unwrap();
+        assert_eq!(found.source, Source::Ran);
     }
 }

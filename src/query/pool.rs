@@ -17,7 +17,7 @@ use std::{
 
 use super::{
     Problem, Stage, heap,
-    library::{Facts, Failure, FileAt, Found, Library, Missing},
+    library::{Examined, Facts, Failure, FileAt, Found, Library, Missing},
     stamp::Stamp,
 };
 use crate::{mesh::Format, watch::Watch};
@@ -237,11 +237,12 @@ fn work(shared: &Shared, thread: usize) {
 
 fn solve(shared: &Shared, job: &Job, eye: &Eye<'_>, facts: &mut Option<Arc<Facts>>) -> Result<Found, (Stage, Missing)> {
     let stamp = job.stamp.ok_or_else(|| (Stage::Content, Missing::Unread("the file is gone".into())))?;
-    let (content, known) = shared.library.examine(&job.path, job.format, stamp, eye)?;
+    let Examined { content, facts: known, mesh } = shared.library.examine(&job.path, job.format, stamp, eye)?;
     let file = FileAt { path: &job.path, format: job.format, content };
     *facts = Some(Arc::clone(&known));
     eye.tell(What::Read(Arc::clone(&known)));
-    shared.library.spectrum(file, &known, job.problem, job.count, eye).map_err(|missing| (Stage::Spectrum, missing))
+    let found = shared.library.spectrum(file, (&known, mesh), job.problem, job.count, eye);
+    found.map_err(|missing| (Stage::Spectrum, missing))
 }
 
 /// Cancels when there is something better to do than to help, or nothing to help with.

@@ -209,7 +209,7 @@ impl Looking {
         let Question::Function { index, .. } = self.question else { return Ok(Finding::Shape(mesh)) };
         let facts = self.library.facts(file).map_err(|unread| unread.reason)?;
         let count = self.settings.kmax.max(index);
-        let found = self.library.spectrum(file, &facts, self.problem, count, &Unwatched).map_err(missing)?;
+        let found = self.library.spectrum(file, (&facts, None), self.problem, count, &Unwatched).map_err(missing)?;
         let place = index.checked_sub(1).filter(|&place| place < found.spectrum.count());
         let place = place.ok_or_else(|| Failure::from(format!("the model has no eigenvalue {index}")))?;
         let vectors = spectrum::eigenvectors(&mesh, self.problem.choice, &found.spectrum, &[place], &Unwatched);

@@ -4,7 +4,7 @@ use std::{path::Path, sync::Arc, time::Instant};
 
 use super::{
     Problem, Source,
-    library::{Facts, FileAt, Library, Missing, prepare},
+    library::{Examined, Facts, FileAt, Library, Missing, prepare, read},
     stamp::Stamp,
     trace::Trace,
 };
@@ -84,8 +84,8 @@ impl Singles {
     /// # Errors
     /// [`SingleError`].
     pub fn solve(&self, path: &Path, problem: Problem, count: usize, watch: &dyn Watch) -> Result<Single, SingleError> {
-        let (file, facts) = self.examine(path, watch)?;
-        let found = self.library.spectrum(file, &facts, problem, count, watch)?;
+        let (file, facts, mesh) = self.examine(path, watch)?;
+        let found = self.library.spectrum(file, (&facts, mesh), problem, count, watch)?;
         Ok(Single {
             geometry: facts.geometry,
             survey: facts.survey.clone(),
@@ -107,8 +107,9 @@ impl Singles {
         count: usize,
         watch: &dyn Watch,
     ) -> Result<Near, SingleError> {
-        let (file, facts) = self.examine(path, watch)?;
-        let mesh = prepare(file, problem, watch)?;
+        let (file, facts, mesh) = self.examine(path, watch)?;
+        facts.admit()?;
+        let mesh = prepare(file, mesh, problem, watch)?;
         let start = Instant::now();
         let mut window = spectrum::near(&mesh, problem.choice, target, count, watch).map_err(|error| match error {
             SpectrumError::Cancelled { .. } => SingleError::Cancelled,
@@ -119,8 +120,21 @@ impl Singles {
         Ok(Near { geometry: facts.geometry, survey: facts.survey.clone(), window, seconds })
     }
 
-    /// The file and what is known of its mesh.
-    fn examine<'a>(&self, path: &'a Path, watch: &dyn Watch) -> Result<(FileAt<'a>, Arc<Facts>), SingleError> {
+    /// The mesh in the file at `path`, in its canonical form.
+    ///
+    /// # Errors
+    /// [`SingleError`].
+    pub fn mesh(&self, path: &Path, watch: &dyn Watch) -> Result<Mesh, SingleError> {
+        let (file, _, mesh) = self.examine(path, watch)?;
+        Ok(read(file, mesh, watch)?)
+    }
+
+    /// The file, what is known of its mesh, and the mesh where it had to be read.
+    fn examine<'a>(
+        &self,
+        path: &'a Path,
+        watch: &dyn Watch,
+    ) -> Result<(FileAt<'a>, Arc<Facts>, Option<Mesh>), SingleError> {
         let failed = |reason: &dyn ToString| SingleError::Failed(reason.to_string());
         let format =
             Format::of(path).ok_or_else(|| failed(&"the name ends in none of .obj, .off, .ply, .stl, .xyz"))?;
@@ -130,8 +144,9 @@ impl Singles {
             Err(error) => return Err(failed(&format!("cannot be read: {error}"))),
         };
         let stamp = stamp.ok_or_else(|| failed(&"the file is gone"))?;
-        let (content, facts) = self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missing)?;
-        Ok((FileAt { path, format, content }, facts))
+        let examined = self.library.examine(path, format, stamp, watch).map_err(|(_, missing)| missing)?;
+        let Examined { content, facts, mesh } = examined;
+        Ok((FileAt { path, format, content }, facts, mesh))
     }
 
     /// The first `count` eigenvalues, or more, of a mesh that is in no file.
@@ -187,5 +202,43 @@ mod tests {
         let point = Mesh::new(vec![[0.0; 3]], Vec::new());
         let refused = open().of_mesh(&point, Choice::default().into(), 20, &Unwatched).unwrap_err();
         assert!(matches!(refused, SingleError::Failed(_)), "{refused}");
+    }
+
+    #[test]
+    fn what_has_no_spectrum_has_no_part_of_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("flat.off");
+        std::fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n").unwrap();
+        let (singles, problem) = (Singles::new(None), Problem::from(Choice::default()));
+        let refused = singles.solve(&path, problem, 2, &Unwatched).unwrap_err();
+        assert_eq!(refused, SingleError::Failed("no face has an area".to_owned()));
+        assert_eq!(singles.near(&path, problem, 5.0, 2, &Unwatched).unwrap_err(), refused);
+    }
+
+    #[test]
+    fn a_file_is_read_as_a_mesh_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.obj");
+        let mesh = synth::generate(&synth::Options { vertices: 400, ..synth::Options::default() }, 0, 0).unwrap();
+        mesh::write::obj(&mesh, &mut std::fs::File::create(&path).unwrap()).unwrap();
+        let (singles, problem) = (Singles::new(None), Problem::from(Choice::default()));
+        let (file, facts, read) = singles.examine(&path, &Unwatched).unwrap();
+        assert_eq!(read, Some(mesh.canonical()));
+        std::fs::remove_file(&path).unwrap();
+        let found = singles.library.spectrum(file, (&facts, read), problem, 20, &Unwatched).unwrap();
+        assert!(found.spectrum.count() >= 20);
+    }
+
+    #[test]
+    fn the_mesh_of_a_file_is_in_its_canonical_form() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shape.off");
+        std::fs::write(&path, "OFF\n3 1 0\n1 0 0\n0 1 0\n0 0 0\n3 0 1 2\n").unwrap();
+        let singles = Singles::new(None);
+        for _ in 0..2 {
+            assert_eq!(singles.mesh(&path, &Unwatched).unwrap().vertices()[0], [0.0; 3]);
+        }
+        std::fs::write(&path, "OFF\n3 1 0\n1 0 0\n").unwrap();
+        assert!(matches!(singles.mesh(&path, &Unwatched), Err(SingleError::Failed(_))));
     }
 }

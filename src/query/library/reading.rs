@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc, time::Instant};
 
-use super::{Facts, Failure, FileAt, Library, Missing};
+use super::{Examined, Facts, Failure, FileAt, Library, Missing};
 use crate::{
     mesh::{self, Format, Mesh},
     query::{
@@ -19,8 +19,8 @@ use crate::{
 const READER: u64 = 2;
 
 impl Library {
-    /// The hash of the bytes of the file at `path` and what is known of its mesh. A large file is read on another
-    /// thread, which is left alone when the watch cancels.
+    /// Looks into the file at `path`. A large one is read on another thread, which is left alone when the watch
+    /// cancels.
     ///
     /// # Errors
     /// The stage that failed, and why.
@@ -30,12 +30,13 @@ impl Library {
         format: Format,
         stamp: Stamp,
         watch: &dyn Watch,
-    ) -> Result<(ContentHash, Arc<Facts>), (Stage, Missing)> {
+    ) -> Result<Examined, (Stage, Missing)> {
         let (library, owned) = (self.clone(), path.to_owned());
         let examine = move || {
             let content = library.content(&owned, stamp).map_err(|reason| (Stage::Content, Missing::Unread(reason)))?;
-            let facts = library.facts(FileAt { path: &owned, format, content });
-            facts.map(|facts| (content, facts)).map_err(|unread| (Stage::Survey, unread.into()))
+            let known = library.facts_and_mesh(FileAt { path: &owned, format, content });
+            let (facts, mesh) = known.map_err(|unread| (Stage::Survey, unread.into()))?;
+            Ok(Examined { content, facts, mesh })
         };
         aside(path, watch, examine).map_err(|Stopped| (Stage::Content, Missing::Cancelled))?
     }
@@ -50,7 +51,7 @@ impl Library {
             }
         }
         let start = Instant::now();
-        let content = ContentHash::of(&read(path)?);
+        let content = ContentHash::of(&bytes(path)?);
         if Stamp::of(path) != Some(stamp) {
             return Err("the file is being changed; it is read again at the next look at the folder".into());
         }
@@ -69,30 +70,42 @@ impl Library {
 
     /// What is known of the mesh in `file`. A file that cannot be read as a mesh fails with its defect.
     pub(crate) fn facts(&self, file: FileAt<'_>) -> Result<Arc<Facts>, Unread> {
+        self.facts_and_mesh(file).map(|(facts, _)| facts)
+    }
+
+    /// The same with the mesh in its canonical form, where it had to be read.
+    fn facts_and_mesh(&self, file: FileAt<'_>) -> Result<(Arc<Facts>, Option<Mesh>), Unread> {
         let name = (file.content, file.format);
         if let Some(known) = self.memory().facts.get(&name) {
-            return known.clone().map_err(|reason| Unread { reason, decided: true });
+            return known.clone().map(|facts| (facts, None)).map_err(|reason| Unread { reason, decided: true });
         }
         let start = Instant::now();
         let key = Key::new("facts").number(READER).field(&file.content.0).field(file.format.ending().as_bytes());
-        let (facts, source) = if let Some(facts) = self.0.store.get::<Facts>(&key) {
-            (Ok(Arc::new(facts)), Source::Disk)
+        let (known, source) = if let Some(facts) = self.0.store.get::<Facts>(&key) {
+            (Ok((Arc::new(facts), None)), Source::Disk)
         } else {
-            let facts = load(file).map(|mesh| Arc::new(Facts { geometry: mesh.hash(), survey: mesh::survey(&mesh) }));
-            if let Ok(facts) = &facts {
+            let read = load(file).map(|mesh| {
+                let (survey, mesh) = (mesh::survey(&mesh), mesh.canonical());
+                (Arc::new(Facts { geometry: mesh.hash(), survey }), Some(mesh))
+            });
+            if let Ok((facts, _)) = &read {
                 self.0.store.put(&key, &**facts);
             }
-            (facts, Source::Ran)
+            (read, Source::Ran)
         };
         // Only what the bytes decide is remembered; that a file has gone is not.
-        if !matches!(&facts, Err(failure) if !failure.decided) {
-            self.memory().facts.insert(name, facts.clone().map_err(|failure| failure.reason));
+        let facts = match &known {
+            Ok((facts, _)) => Some(Ok(Arc::clone(facts))),
+            Err(failure) => failure.decided.then(|| Err(Arc::clone(&failure.reason))),
+        };
+        if let Some(facts) = facts {
+            self.memory().facts.insert(name, facts);
         }
         if source == Source::Ran {
             self.costs().made(Stage::Survey, start.elapsed());
         }
         self.trace().made(Stage::Survey, source, start.elapsed());
-        facts
+        known
     }
 
     /// The mesh that a problem is on, to look at. It is kept until another is looked at: one function after another is
@@ -102,19 +115,30 @@ impl Library {
         if let Some((_, mesh)) = self.memory().looked_at.as_ref().filter(|(known, _)| *known == name) {
             return Ok(Arc::clone(mesh));
         }
-        let mesh = Arc::new(prepare(file, problem, &Unwatched)?);
+        let mesh = Arc::new(prepare(file, None, problem, &Unwatched)?);
         self.memory().looked_at = Some((name, Arc::clone(&mesh)));
         Ok(mesh)
     }
 }
 
-/// The mesh that a problem on the mesh in `file` is on, in its canonical form; read as [`Library::examine`]
-/// reads.
-pub(in crate::query) fn prepare(file: FileAt<'_>, problem: Problem, watch: &dyn Watch) -> Result<Mesh, Missing> {
+/// The mesh that a problem on the mesh in `file` is on, in its canonical form. `known` is as for [`read`].
+pub(in crate::query) fn prepare(
+    file: FileAt<'_>,
+    known: Option<Mesh>,
+    problem: Problem,
+    watch: &dyn Watch,
+) -> Result<Mesh, Missing> {
+    Ok(problem.prepare(read(file, known, watch)?, watch)?)
+}
+
+/// The mesh in `file` in its canonical form: the one that is `known`, else read as [`Library::examine`] reads.
+pub(in crate::query) fn read(file: FileAt<'_>, known: Option<Mesh>, watch: &dyn Watch) -> Result<Mesh, Missing> {
+    if let Some(mesh) = known {
+        return Ok(mesh);
+    }
     let (path, FileAt { format, content, .. }) = (file.path.to_owned(), file);
     let read = move || load(FileAt { path: &path, format, content }).map(|mesh| mesh.canonical());
-    let canonical = aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??;
-    Ok(problem.prepare(canonical, watch)?)
+    Ok(aside(file.path, watch, read).map_err(|Stopped| Missing::Cancelled)??)
 }
 
 impl From<RemeshError> for Missing {
@@ -146,13 +170,13 @@ impl From<Failure> for Unread {
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     std::fs::read(path).map_err(|error| format!("cannot be read: {error}").into())
 }
 
 /// Reads the mesh, and makes sure that it is still the one meant.
 fn load(file: FileAt<'_>) -> Result<Mesh, Unread> {
-    let bytes = read(file.path)?;
+    let bytes = bytes(file.path)?;
     if ContentHash::of(&bytes) != file.content {
         return Err(Failure::from("the file is being changed; it is read again at the next look at the folder").into());
     }

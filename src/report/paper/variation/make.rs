@@ -1,7 +1,7 @@
 //! The spectra behind Figure 1, from the store or solved.
 
 use std::{
-    path::{Path, PathBuf},
+    path::PathBuf,
     sync::{
         Mutex, OnceLock,
         atomic::{AtomicUsize, Ordering},
@@ -12,7 +12,7 @@ use super::{EIGENVALUES, Spectra, Variation};
 use crate::{
     dataset::Role,
     laplacian::Operator,
-    mesh::{self, Format, Mesh, deform},
+    mesh::{Mesh, deform},
     query::{Answer, Problem, Settings, SingleError, Singles},
     remesh,
     spectrum::Choice,
@@ -130,19 +130,13 @@ fn first<'a>(singles: &Singles, subject: &'a Subject, watch: &dyn Watch) -> Resu
     let mut why = "the class has no training model".to_owned();
     for (name, path) in &subject.models {
         let solved = singles.solve(path, subject.problem(Operator::Fem), EIGENVALUES, &Silent(watch));
-        match solved.map_err(|error| error.to_string()).and_then(|single| Ok((read(path)?, single.spectrum.count()))) {
+        match solved.and_then(|single| Ok((singles.mesh(path, watch)?, single.spectrum.count()))) {
             Ok((mesh, count)) => return Ok((name, mesh, count.min(EIGENVALUES))),
-            Err(reason) if watch.cancelled() => return Err(reason),
+            Err(reason) if watch.cancelled() => return Err(reason.to_string()),
             Err(reason) => why = format!("{name}: {reason}"),
         }
     }
     Err(why)
-}
-
-fn read(path: &Path) -> Result<Mesh, String> {
-    let format = Format::of(path).ok_or_else(|| "not a mesh by its name".to_owned())?;
-    let bytes = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
-    Ok(mesh::read(&bytes, format).map_err(|error| error.to_string())?.canonical())
 }
 
 /// What the threads share.
