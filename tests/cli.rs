@@ -52,6 +52,7 @@ fn a_wrong_command_line_exits_with_2_and_says_what_is_wrong() {
     }
     let nothing = tui(&room, &[]);
     assert_eq!(nothing.code, Some(2));
+    assert!(nothing.err.starts_with("Which Laplace-Beltrami eigenvalues"), "{}", nothing.err);
     assert!(nothing.err.contains("Usage: tui") && nothing.err.contains("Examples:"), "{}", nothing.err);
 }
 
@@ -103,7 +104,7 @@ fn a_configuration_is_read_and_its_errors_name_the_line() {
     let well = tui(&room, &["doctor", "shapes"]);
     let line = |word: &str| well.out.lines().find(|line| line.contains(word)).unwrap_or_default().to_owned();
     assert!(line("config ").ends_with("config.toml: kmax=7"), "{}", well.out);
-    assert!(line("threads").contains("1 models") && line("cache").contains("kept"), "{}", well.out);
+    assert!(line("threads").contains("1 model is solved") && line("cache").contains("kept"), "{}", well.out);
     // A report gives everybody the same figures: of the configuration it takes the place of the cache.
     let report = tui(&room, &["report", "shapes", "--set", "kmax=20", "--format", "json"]);
     assert_eq!(report.code, Some(0), "{}", report.err);

@@ -43,7 +43,11 @@ pub(super) fn run(arguments: &DoctorArguments) -> Result<Exit, Failure> {
     }
     let config = config.unwrap_or_default();
     cache(&mut report, &arguments.data, arguments.cache.as_deref().or(config.cache.dir.as_deref()));
-    report.good("threads", &format!("{} models are solved at once", threads(config.threads)));
+    let solved = match threads(config.threads) {
+        1 => "1 model is solved at a time".to_owned(),
+        threads => format!("{threads} models are solved at once"),
+    };
+    report.good("threads", &solved);
     data(&mut report, &arguments.data);
     output::print(report.text.as_bytes())?;
     Ok(if report.bad { Exit::Failed } else { Exit::Done })

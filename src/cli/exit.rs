@@ -6,6 +6,8 @@ use std::{
     process::ExitCode,
 };
 
+use clap::error::ErrorKind;
+
 use crate::report::plain;
 
 /// How the program ends.
@@ -101,7 +103,11 @@ pub(super) fn conclude(outcome: Result<Exit, Failure>) -> Exit {
 
 /// Prints help or version, or what is wrong with the command line.
 pub(super) fn explain(error: &clap::Error) -> Exit {
-    if error.use_stderr() {
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        // All of the help, and nothing that is wrong.
+        let _ = error.print();
+        Exit::Usage
+    } else if error.use_stderr() {
         let text = error.render().to_string();
         complain(text.strip_prefix("error: ").unwrap_or(&text).trim_end());
         Exit::Usage

@@ -10,7 +10,7 @@ mod star;
 use self::near::Tree;
 use super::{
     LaplacianError,
-    surface::{Surface, first_at_position, scaled},
+    surface::{Surface, VERTICES_ARE, counted, first_at_position, scaled},
 };
 use crate::{
     mesh::{Mesh, vector::sub},
@@ -35,7 +35,7 @@ pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianEr
     }
     let (first, later) = first_at_position(mesh, pulse)?;
     if later > 0 {
-        notes.push(format!("{later} vertices are at the position of another one: left out"));
+        notes.push(format!("{} at the position of another one: left out", counted(later, VERTICES_ARE)));
     }
     let vertices: Vec<u32> =
         (0..).zip(&first).filter(|&(vertex, &first)| vertex == first).map(|(vertex, _)| vertex).collect();
@@ -51,7 +51,7 @@ pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianEr
     triangles.iter().flatten().for_each(|&point| place[point as usize] = 0);
     let used: Vec<u32> = (0..points.len() as u32).filter(|&point| place[point as usize] == 0).collect();
     if used.len() < points.len() {
-        notes.push(format!("{} vertices are in no triangle: left out", points.len() - used.len()));
+        notes.push(format!("{} in no triangle: left out", counted(points.len() - used.len(), VERTICES_ARE)));
     }
     for (at, &point) in (0..).zip(&used) {
         place[point as usize] = at;

@@ -114,11 +114,19 @@ pub(super) fn first_at_position(mesh: &Mesh, pulse: &Pulse) -> Result<(Vec<u32>,
     Ok((all, later))
 }
 
+/// The beginning of a note on so many vertices.
+pub(super) const VERTICES_ARE: [&str; 2] = ["vertex is", "vertices are"];
+
+/// A number, and the words for one or for many.
+pub(super) fn counted(count: usize, [one, many]: [&str; 2]) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}
+
 /// Replaces each vertex by the first one at its position.
 fn join(mesh: &Mesh, triangles: &mut [[u32; 3]], notes: &mut Vec<String>, pulse: &Pulse) -> Result<(), Stopped> {
     let (first, later) = first_at_position(mesh, pulse)?;
     if later > 0 {
-        notes.push(format!("{later} vertices are at the position of another one: joined with it"));
+        notes.push(format!("{} at the position of another one: joined with it", counted(later, VERTICES_ARE)));
     }
     for vertex in triangles.iter_mut().flatten() {
         *vertex = first[*vertex as usize];
@@ -132,7 +140,7 @@ fn proper(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>) -> Result<Vec<[
     triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
     let collapsed = all - triangles.len();
     if collapsed > 0 {
-        notes.push(format!("{collapsed} faces name a vertex twice: left out"));
+        notes.push(format!("{} a vertex twice: left out", counted(collapsed, ["face names", "faces name"])));
     }
     if triangles.is_empty() { Err(LaplacianError::Empty) } else { Ok(triangles) }
 }
@@ -154,7 +162,7 @@ fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>, pulse: &Pulse
     }
     let repeated = again.iter().filter(|&&is| is).count();
     if repeated > 0 {
-        notes.push(format!("{repeated} faces repeat another one: left out"));
+        notes.push(format!("{} another one: left out", counted(repeated, ["face repeats", "faces repeat"])));
         let mut at = 0;
         triangles.retain(|_| {
             at += 1;
@@ -177,7 +185,8 @@ fn compact(
     }
     let vertices: Vec<u32> = (0..new.len() as u32).filter(|&vertex| new[vertex as usize] == 0).collect();
     if vertices.len() < new.len() && !welded {
-        notes.push(format!("{} vertices belong to no face: left out", new.len() - vertices.len()));
+        let left = counted(new.len() - vertices.len(), ["vertex belongs", "vertices belong"]);
+        notes.push(format!("{left} to no face: left out"));
     }
     for (at, &vertex) in vertices.iter().enumerate() {
         new[vertex as usize] = at as u32;
@@ -240,4 +249,27 @@ pub(super) fn components(count: usize, edges: impl Iterator<Item = (u32, u32)>) 
         })
         .collect();
     (component, next as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::watch::Unwatched;
+
+    #[test]
+    fn notes_tell_one_from_many() {
+        let said = |stray: usize| {
+            let mut vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+            vertices.resize(3 + stray, [5.0; 3]);
+            let mesh = Mesh::new(vertices, vec![[0, 1, 2]]);
+            let mut notes = Vec::new();
+            compact(&mesh, mesh.triangles().to_vec(), false, &mut notes);
+            join(&mesh, &mut mesh.triangles().to_vec(), &mut notes, &Pulse::new(&Unwatched)).unwrap();
+            notes
+        };
+        assert_eq!(said(1), ["1 vertex belongs to no face: left out"]);
+        let two =
+            ["2 vertices belong to no face: left out", "1 vertex is at the position of another one: joined with it"];
+        assert_eq!(said(2), two);
+    }
 }

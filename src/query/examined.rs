@@ -18,7 +18,7 @@ use crate::{
     study::{self, Draws, Honest, Learner, Plan, Recipe, Retrieved, SPLITS, Sources, Splits, Tuned},
 };
 
-/// Increase when [`study::honest`] would say something else of the same sample.
+/// Increase when what is [kept] here would be something else of the same sample.
 const EXAMINER: u64 = 2;
 
 /// What every scheme of Table 5 retrieves.

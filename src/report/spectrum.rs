@@ -296,9 +296,9 @@ fn text(spectrum: &MeshSpectrum, seconds: f64) -> String {
     } else {
         let _ = writeln!(
             text,
-            "  mesh      {} vertices, {} triangles, {}, {boundary}{genus}, area {}",
+            "  mesh      {} vertices, {}, {}, {boundary}{genus}, area {}",
             spectrum.vertices,
-            spectrum.triangles,
+            count(spectrum.triangles, "triangle", "triangles"),
             count(spectrum.components, "component", "components"),
             significant(spectrum.area)
         );

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use unicode_width::UnicodeWidthStr as _;
+
 use super::{MeshSpectrum, Spectra};
 use crate::report::layout::plain;
 
@@ -38,16 +40,34 @@ impl Spectra {
             ]
         });
         let rows: Vec<[String; 6]> = std::iter::once(head).chain(self.spectra.iter().map(row)).chain(refused).collect();
-        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let width = |column: usize| rows.iter().map(|row| row[column].width()).max().unwrap_or(0);
         let widths = [0, 1, 2, 3, 4].map(width);
         let mut text = String::new();
         for row in &rows {
-            let _ = write!(text, "{:<1$}", row[0], widths[0]);
-            for column in 1..5 {
-                let _ = write!(text, "  {:>1$}", row[column], widths[column]);
+            for (column, (cell, width)) in row.iter().zip(widths).enumerate() {
+                let pad = " ".repeat(width - cell.width());
+                let _ = if column == 0 { write!(text, "{cell}{pad}") } else { write!(text, "  {pad}{cell}") };
             }
             let _ = writeln!(text, "  {}", row[5]);
         }
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::spectrum::Failed;
+
+    #[test]
+    fn columns_line_up_by_display_width() {
+        let mut spectra = Spectra::new();
+        for file in ["蚂蚁.off", "ant.off"] {
+            spectra.failed.push(Failed { file: file.to_owned(), reason: "none".to_owned() });
+        }
+        let text = spectra.summary();
+        let places: Vec<usize> =
+            text.lines().skip(1).map(|line| line[..line.find("refused").unwrap()].width()).collect();
+        assert_eq!(places[0], places[1], "{text}");
     }
 }

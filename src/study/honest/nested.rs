@@ -1,4 +1,4 @@
-//! Dealing models into folds, and asking every method for every fold.
+//! Asking every method for every fold.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -20,8 +20,8 @@ use crate::{
 ///
 /// `sample` is not scaled: a scale is learnt where everything else is learnt, inside the fold.
 ///
-/// Models are dealt class by class, so that every fold has as even a share of each as can be. With more folds than
-/// models, some folds are empty. The watch is told how many of the (repeats × folds × methods) parts are done.
+/// With more folds than models, some folds are empty. The watch is told how many of the (repeats × folds × methods)
+/// parts are done.
 ///
 /// # Errors
 /// [`Cancelled`] when the watch said so.
