@@ -59,8 +59,8 @@ enum Message {
     Over(u64),
     /// The answer to a question of the asking of that number.
     Reply(u64, Reply),
-    /// A surface that was read.
-    Surface(Reply),
+    /// A surface that was read after so many looks at the folder.
+    Surface(u64, Reply),
     /// Figures under other parameters.
     Trial(Trial),
     /// How far the spectra of a trial are.
@@ -177,6 +177,8 @@ struct Desk<'a> {
     /// What the screen wants to know, and how often it was asked.
     questions: Vec<Question>,
     askings: u64,
+    /// How often the folder was looked at.
+    sights: u64,
     /// Calls off the trials under way.
     recall: Recall,
     /// Call off the paper's document and the Figure 1 under way.
@@ -213,6 +215,7 @@ impl<'a> Desk<'a> {
             studies: 0,
             questions: Vec::new(),
             askings: 0,
+            sights: 0,
             recall: Recall::default(),
             paper: Recall::default(),
             varying: Recall::default(),
@@ -279,7 +282,7 @@ impl<'a> Desk<'a> {
                     Message::Piece(number, piece) => self.learn(number, piece),
                     Message::Over(number) => self.over(number),
                     Message::Reply(number, reply) => self.reply(number, reply),
-                    Message::Surface(reply) => (self.notify)(Update::Reply(Arc::new(reply))),
+                    Message::Surface(sight, reply) => self.surface(sight, reply),
                 }
             }
             if let Some(settings) = newest {
@@ -311,6 +314,7 @@ impl<'a> Desk<'a> {
                 Ok(data) => {
                     self.note(Weight::Note, "looked at the files again");
                     self.host.update(data);
+                    self.sights += 1;
                     (self.notify)(Update::Rescanned);
                     self.saved = false;
                     self.restudy();

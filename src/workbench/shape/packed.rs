@@ -153,8 +153,10 @@ fn png(picture: &Picture, coloured: bool) -> Option<Vec<u8>> {
 }
 
 fn cover(picture: &Picture, raster: Raster, (columns, rows): (u16, u16), scale: usize) -> Vec<Cover> {
+    // As large as a terminal says that its cells are.
     let pixels = |cell: u16, size: u16, end: usize| {
-        let (first, last) = (usize::from(cell * size) / scale, (usize::from(cell * size + size) - 1) / scale);
+        let (cell, size) = (usize::from(cell), usize::from(size));
+        let (first, last) = (cell * size / scale, (cell * size + size - 1) / scale);
         first.min(end)..(last + 1).min(end)
     };
     let of = |(row, column): (u16, u16)| {
@@ -267,6 +269,8 @@ mod tests {
         let raster = Raster { cell: (16, 20), ..raster };
         assert_eq!(pack(&picture(), true, raster, (5, 4), (2, false)).unwrap().cover, packed.cover);
         assert!(pack(&Picture::default(), true, raster, (5, 4), (1, false)).is_none());
+        let raster = Raster { cell: (u16::MAX, u16::MAX), ..raster };
+        assert!(pack(&picture(), true, raster, (5, 4), (u16::MAX.into(), false)).is_some());
     }
 
     #[test]

@@ -78,14 +78,16 @@ fn work(inbox: &mpsc::Receiver<Vec<Scene>>, tell: &dyn Fn(Scene, Arc<Picture>)) 
             wanted = inbox.try_iter().last().unwrap_or(first);
             rough = None;
         }
-        if let Some(scene) = rough.take() {
-            let picture = easel.paint(&scene, false);
-            tell(scene, Arc::new(picture));
-        } else if !wanted.is_empty() {
+        if !wanted.is_empty() {
             let scene = wanted.remove(0);
             let turning = easel.turning(&scene);
             let picture = easel.paint(&scene, turning);
-            rough = turning.then(|| scene.clone());
+            if turning {
+                rough = Some(scene.clone());
+            }
+            tell(scene, Arc::new(picture));
+        } else if let Some(scene) = rough.take() {
+            let picture = easel.paint(&scene, false);
             tell(scene, Arc::new(picture));
         }
     }
@@ -200,6 +202,10 @@ mod tests {
         assert!(yaw == 1 && rough.width < 400 && packed(&rough) <= ROUGH.1, "{}", rough.width);
         let (yaw, fine) = next();
         assert!(yaw == 1 && fine.width == 800 && packed(&fine) > packed(&rough));
+        // What else is wanted comes first.
+        painter.paint(vec![seen(3), Scene { model: 1, style: Style::Dots, ..seen(3) }]);
+        let painted: Vec<_> = (0..3).map(|_| next().1.packed.is_some()).collect();
+        assert_eq!(painted, [true, false, true]);
         // What is no longer wanted is not painted again.
         painter.paint(vec![seen(2)]);
         assert!(next().1.width < 400);

@@ -41,14 +41,22 @@ impl Desk<'_> {
     /// Reads surfaces, all on one thread: nobody looks at several at once for long.
     pub(super) fn look(&mut self, questions: Vec<Question>) {
         let looking: Vec<_> = questions.into_iter().filter_map(|question| self.host.look(question)).collect();
-        let outbox = self.outbox.clone();
+        let (outbox, sight) = (self.outbox.clone(), self.sights);
         let begun = std::thread::Builder::new().name("surfaces".into()).spawn(move || {
             for looking in looking {
-                let _ = outbox.send(Message::Surface(looking.answer()));
+                let _ = outbox.send(Message::Surface(sight, looking.answer()));
             }
         });
         if let Err(error) = begun {
             self.host.warn(&format!("the system has no thread to give: {error}"));
+        }
+    }
+
+    /// Passes a surface on, unless the folder was looked at again meanwhile: the file may be another by now, the model
+    /// may have another place, and the screen has asked again.
+    pub(super) fn surface(&self, sight: u64, reply: Reply) {
+        if sight == self.sights {
+            (self.notify)(Update::Reply(Arc::new(reply)));
         }
     }
 
@@ -107,5 +115,58 @@ impl Desk<'_> {
         if number == self.askings {
             (self.notify)(Update::Reply(Arc::new(reply)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{cell::RefCell, sync::mpsc, time::Duration};
+
+    use super::*;
+    use crate::{
+        mesh::{self, synth},
+        query::Settings,
+        store::Store,
+        workbench::{Command, worker::Setup},
+    };
+
+    #[test]
+    fn a_surface_of_before_the_last_look_at_the_folder_is_dropped() {
+        let folder = tempfile::tempdir().unwrap();
+        for (class, model) in [("a", 0), ("a", 1), ("b", 0), ("b", 1)] {
+            let mesh =
+                synth::generate(&synth::Options { vertices: 300, ..synth::Options::default() }, 0, model).unwrap();
+            let path = folder.path().join(class).join(format!("{model}.obj"));
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            mesh::write::obj(&mesh, &mut std::fs::File::create(path).unwrap()).unwrap();
+        }
+        let setup = Setup {
+            root: folder.path().to_owned(),
+            options: crate::dataset::Options::default(),
+            settings: Settings { kmax: 5, ..Settings::default() },
+            store: Store::none(),
+            threads: 1,
+        };
+        let (data, told) = (setup.open().unwrap(), RefCell::new(Vec::new()));
+        let (outbox, inbox) = mpsc::channel();
+        let notify = |update| told.borrow_mut().push(update);
+        let mut desk = Desk::new(setup, data, outbox, &notify);
+        let surface = || loop {
+            if let Message::Surface(sight, reply) = inbox.recv_timeout(Duration::from_secs(30)).unwrap() {
+                return (sight, reply);
+            }
+        };
+        let shapes = || told.borrow().iter().filter(|update| matches!(update, Update::Reply(_))).count();
+        desk.look(vec![Question::Shape(0)]);
+        let (sight, reply) = surface();
+        desk.surface(sight, reply.clone());
+        assert_eq!(shapes(), 1);
+        desk.obey(&Command::Rescan);
+        desk.surface(sight, reply);
+        assert_eq!(shapes(), 1);
+        desk.look(vec![Question::Shape(0)]);
+        let (sight, reply) = surface();
+        desk.surface(sight, reply);
+        assert_eq!(shapes(), 2);
     }
 }
