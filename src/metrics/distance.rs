@@ -66,10 +66,14 @@ impl Distance {
 
 /// What one feature adds to the distance of two models: never negative, and the same either way round.
 pub(crate) trait Term: Copy + Send + Sync {
-    /// Whether the term of one feature grows, or stays, as one walks away from a value to either side.
-    const GROWS: bool = true;
-    /// Whether that holds of what is computed, too, in spite of rounding.
+    /// Whether it is computed so that it grows exactly, too, where it grows: in spite of rounding.
     const GROWS_EXACTLY: bool = false;
+
+    /// Whether the term of one feature grows, or stays, as one walks away from one of these values to either side.
+    fn grows(values: &[f64]) -> bool {
+        let _ = values;
+        true
+    }
 
     /// The term of the values `a` and `b`.
     fn term(a: f64, b: f64) -> f64;
@@ -141,6 +145,14 @@ fn spectral(a: f64, b: f64) -> f64 {
     if product > 0.0 { (a - b).abs() / product } else { 0.0 }
 }
 
+/// Whether these are values between which |a − b| / |a b| grows with how far apart they are: of one sign, as a zero is
+/// as near as can be, and such that no product of two is too small or too great to be told from others.
+fn one_sided(values: &[f64]) -> bool {
+    let products = f64::MIN_POSITIVE.sqrt()..=f64::MAX.sqrt();
+    let all = |sign: f64| values.iter().all(|&value| products.contains(&(sign * value)));
+    all(1.0) || all(-1.0)
+}
+
 /// The same in every lane.
 #[inline(always)]
 fn spectrals<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
@@ -150,8 +162,9 @@ fn spectrals<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
 }
 
 impl Term for Wesd15 {
-    // A zero is as near as can be, but further away than small values.
-    const GROWS: bool = false;
+    fn grows(values: &[f64]) -> bool {
+        one_sided(values)
+    }
 
     #[inline(always)]
     fn term(a: f64, b: f64) -> f64 {
@@ -167,7 +180,9 @@ impl Term for Wesd15 {
 }
 
 impl Term for Wesd2 {
-    const GROWS: bool = false;
+    fn grows(values: &[f64]) -> bool {
+        one_sided(values)
+    }
 
     #[inline(always)]
     fn term(a: f64, b: f64) -> f64 {

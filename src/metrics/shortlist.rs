@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use pulp::Simd;
 
-use super::{Term, columns::Panels};
+use super::{Term, add_where_u64s, columns::Panels};
 
 /// Features added in one go: the lanes of the widest vector.
 pub(super) const SPAN: usize = Panels::FEATURES;
@@ -180,7 +180,7 @@ fn nth<S: Simd>(simd: S, values: &mut Vec<f64>, nth: usize) -> f64 {
         let mut before = simd.splat_u64s(0);
         for &value in &values[..count] {
             let less = simd.less_than_f64s(simd.splat_f64s(value), own);
-            before = simd.select_u64s(less, simd.add_u64s(before, one), before);
+            before = add_where_u64s(simd, less, before, one);
         }
         let within = simd.less_than_or_equal_u64s(before, nth);
         found = simd.select_f64s(within, simd.max_f64s(found, own), found);
@@ -216,11 +216,11 @@ impl List {
             let mut count = simd.splat_u64s(0);
             for &sum in lower.iter().skip(nth).step_by(vectors) {
                 let earlier = simd.less_than_or_equal_f64s(sum, own);
-                count = simd.select_u64s(earlier, simd.add_u64s(count, one), count);
+                count = add_where_u64s(simd, earlier, count, one);
             }
             for &sum in higher.iter().skip(nth).step_by(vectors) {
                 let earlier = simd.less_than_f64s(sum, own);
-                count = simd.select_u64s(earlier, simd.add_u64s(count, one), count);
+                count = add_where_u64s(simd, earlier, count, one);
             }
             *before = count;
         }

@@ -126,10 +126,13 @@ impl Negatives {
         let (low, high) = ranges.class(class);
         for (at, &model) in others.iter().enumerate() {
             let (group, bit) = (at / BITS, at % BITS);
-            let bits = within[group * cols..(group + 1) * cols].iter_mut();
-            for (((bits, value), low), high) in bits.zip(sample.train.row(model)).zip(low).zip(high) {
-                *bits |= u8::from((low..=high).contains(&value)) << bit;
-            }
+            let bits = &mut within[group * cols..(group + 1) * cols];
+            let values = sample.train.row(model);
+            pulp::Arch::new().dispatch(|| {
+                for (((bits, value), low), high) in bits.iter_mut().zip(values).zip(low).zip(high) {
+                    *bits |= u8::from((low..=high).contains(&value)) << bit;
+                }
+            });
         }
         let mut weights = vec![0.0; groups * BITS];
         weights[..others.len()].fill(0.5 / others.len() as f64);

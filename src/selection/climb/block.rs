@@ -8,10 +8,12 @@
 //! the relatives, which gives the [`LEAST`] loss, or in favour of the strangers, which gives the [`MOST`]. Where both
 //! are the same, that is the loss.
 
+use std::hint::black_box;
+
 use pulp::Simd;
 
 use super::{Cost, judge::Judge, row::Row};
-use crate::metrics::{Columns, Term};
+use crate::metrics::{Columns, Term, add_where_u64s};
 
 /// Of a stranger and a relative at equal distance, the relative comes first.
 pub(super) const LEAST: bool = true;
@@ -171,6 +173,7 @@ impl<S: Simd> Block<S> {
         self.before.resize(count, simd.splat_u64s(0));
         // The relatives before `first` are nearer than any stranger left.
         let (mut first, mut live) = (0, count);
+        let one = simd.splat_u64s(black_box(1));
         for (from, chunk) in chunks {
             while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
                 live -= 1;
@@ -193,7 +196,7 @@ impl<S: Simd> Block<S> {
                     } else {
                         simd.less_than_or_equal_f64s(stranger, relative)
                     };
-                    *before = simd.select_u64s(first, simd.add_u64s(*before, simd.splat_u64s(1)), *before);
+                    *before = add_where_u64s(simd, first, *before, one);
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::{
     ask::Ask,
     habits::Habits,
     judge::Judge,
-    line::Line,
+    line::{Line, RoughLosses},
     race::{Bound, Outcome},
     row::Row,
 };
@@ -102,15 +102,26 @@ impl<'a, T: Term> Ground<'a, T> {
 
     /// The loss with `index` alone.
     fn alone(&self, index: u32, bound: &Bound, habits: &Habits, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
-        if !T::GROWS {
+        let values = &self.columns.col(index as usize - 1)[..self.rows.len()];
+        if !T::grows(values) {
             return self.exactly(index, bound, watch);
         }
         let judge = self.judge;
-        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
         let (labels, starts) = judge.classes();
-        let mut line = Line::new(&self.columns.col(index as usize - 1)[..self.rows.len()], labels, starts);
-        let mut seen = habits.of(index);
-        let mut loss_of = |model| {
+        let mut line = Line::new(values, labels, starts);
+        if judge.fits_tables() {
+            let losses = pulp::Arch::new().dispatch(RoughLosses { line: &line, judge, term: PhantomData::<T> });
+            let loss: u64 = losses.iter().map(|&loss| u64::from(loss)).sum();
+            for (seen, &loss) in habits.of(index).iter_mut().zip(&losses) {
+                *seen = judge.roughly_in_brief(u64::from(loss));
+            }
+            let loss = u128::from(loss) * judge.rough_unit();
+            if (loss, index) >= bound.mark() {
+                return if watch.cancelled() { Err(Cancelled) } else { Ok(Outcome::GivenUp(loss as f64)) };
+            }
+        }
+        let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
+        self.one_by_one(index, bound, watch, |model| {
             let (looks, gains, mut gained) = (judge.looks_at(model), judge.gains(model), 0);
             let found = |rank: usize| gained += gains[rank];
             if !T::GROWS_EXACTLY {
@@ -121,11 +132,6 @@ impl<'a, T: Term> Ground<'a, T> {
             }
             nearest.begin(Some(model));
             self.loss_of(model, &[index], &mut nearest)
-        };
-        self.one_by_one(index, bound, watch, |model| {
-            let loss = loss_of(model);
-            seen[model] = judge.in_brief(loss);
-            loss
         })
     }
 

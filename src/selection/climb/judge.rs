@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Cost, block::network, sketch::RANKS};
+use super::{Cost, block::network, row::NEAR, sketch::RANKS};
 use crate::metrics::{Exam, Recall, Sample};
 
 /// What the nearest models of a model asked cost: 1 for the wrong class, or what its ADR lacks of 1 in the exact units
@@ -72,6 +72,11 @@ impl<'a> Judge<'a> {
         Self { cost, exam, recall, members, starts, networks, credits, unit, rough, rough_unit, rough_bits }
     }
 
+    /// Whether the classes are small enough for [`Judge::rough_credits`].
+    pub(super) fn fits_tables(&self) -> bool {
+        self.most_relevant() + NEAR < RANKS
+    }
+
     /// The losses of a [`Sketch`](super::sketch::Sketch) are in these units, rounded down.
     pub(super) const fn rough_unit(&self) -> u128 {
         self.rough_unit
@@ -87,18 +92,9 @@ impl<'a> Judge<'a> {
         (&self.rough[self.exam.label(asked) as usize], whole)
     }
 
-    /// The same of a rough loss.
+    /// A rough loss of one model asked in 256ths of the greatest, or up to twice as many.
     pub(super) fn roughly_in_brief(&self, loss: u64) -> u8 {
         (loss >> self.rough_bits) as u8
-    }
-
-    /// A loss of one model asked in 256ths of the greatest, or up to twice as many.
-    pub(super) fn in_brief(&self, loss: u128) -> u8 {
-        let most = match self.cost {
-            Cost::Error => 1,
-            Cost::Adr => self.recall.scale(),
-        };
-        (loss >> (u128::BITS - most.leading_zeros()).saturating_sub(u8::BITS)) as u8
     }
 
     /// What a relevant model makes good of the loss of a model asked, by rank − 1; beyond, nothing.
@@ -170,6 +166,11 @@ impl<'a> Judge<'a> {
     /// The class of a model.
     pub(super) fn label(&self, model: usize) -> u32 {
         self.exam.label(model)
+    }
+
+    /// The models of every class, ascending.
+    pub(super) fn members(&self) -> &[Vec<u32>] {
+        &self.members
     }
 
     /// The models of the same class, the model itself among them, ascending.

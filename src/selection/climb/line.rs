@@ -4,6 +4,9 @@ use std::ops::Range;
 
 use super::order::ascending;
 use crate::metrics::{Term, before};
+pub(super) use rough::RoughLosses;
+
+mod rough;
 
 /// How much nearer than a model between them a model may seem, because the terms are rounded.
 const SLACK: f64 = 1.0 + 1e-12;

@@ -9,13 +9,8 @@ use std::hint::black_box;
 
 use pulp::{Simd, bytemuck::cast};
 
-use super::{
-    Cost,
-    block::side_by_side,
-    judge::Judge,
-    row::{NEAR, Row},
-};
-use crate::metrics::{Columns, Term};
+use super::{Cost, block::side_by_side, judge::Judge, row::Row};
+use crate::metrics::{Columns, Term, add_where_u32s};
 
 /// The lanes of the widest vector.
 pub(super) const LANES: usize = 16;
@@ -39,7 +34,7 @@ pub(super) struct Sketch<S: Simd> {
 impl<S: Simd> Sketch<S> {
     /// Whether the lanes of this machine can be halved, and the classes are small enough.
     pub(super) fn fits(judge: &Judge<'_>) -> bool {
-        S::F32_LANES == 2 * S::F64_LANES && cfg!(target_endian = "little") && judge.most_relevant() + NEAR < RANKS
+        S::F32_LANES == 2 * S::F64_LANES && cfg!(target_endian = "little") && judge.fits_tables()
     }
 
     /// For the features `indices` (from 1), at most as many as there are lanes.
@@ -159,7 +154,7 @@ impl<S: Simd> Sketch<S> {
                 let mut count = *before;
                 for &stranger in &strangers {
                     let less = simd.less_than_u32s(stranger, relative);
-                    count = simd.select_u32s(less, simd.add_u32s(count, one), count);
+                    count = add_where_u32s(simd, less, count, one);
                 }
                 *before = count;
             }
