@@ -124,6 +124,9 @@ fn each_parameter_runs_exactly_what_reads_it() {
     assert_eq!(after(&mut host, Parameter::Kmax, "25"), learning);
     // Re-meshed models have spectra of their own, which live beside those of the models as they are.
     assert_eq!(after(&mut host, Parameter::Remesh, "120"), with_spectra(MODELS, &LEARNING));
+    let answer = host.run(&Unwatched).unwrap();
+    let defects = answer.models.iter().flat_map(|model| model.defects.iter());
+    assert_eq!(defects.filter(|defect| defect.contains("re-meshed")).count(), 0, "what was asked for is no defect");
     let log = after(&mut host, Parameter::Remesh, "original");
     assert!(!log.iter().any(|q| [Content, Facts, Spectrum, Sample, FirstK, Climb, Boost].contains(q)), "{log:?}");
     let log = after(&mut host, Parameter::Remesh, "120");

@@ -330,6 +330,10 @@ fn from_a_wrong_cell_to_a_model_and_back() {
     update(&mut state, Action::NextConfusion);
     update(&mut state, Action::Open);
     compare("Confusion-opened", &drawn(&state, SMALL));
+    let mut narrowed = state.clone();
+    narrowed.models.filter = Filter::Out;
+    let screen = drawn(&narrowed, LARGE);
+    assert!(screen.contains(" models that take no part among "), "of which it is said still: {screen}");
     update(&mut state, Action::Open);
     assert_eq!(state.view, View::Neighbours);
     let model = state.model();

@@ -66,7 +66,8 @@ fn heading(state: &State, listed: usize, pane: &mut Pane<'_>) {
     let mut said = match (&list.only, list.filter) {
         _ if !list.narrowed() => number::count(all, "model"),
         (Some(only), Filter::All) => format!("{listed} of {all}: {}", only.label),
-        (_, filter) => format!("{listed} of {all}: {}", filter.name()),
+        (Some(only), filter) => format!("{listed} of {all}: {} among {}", filter.name(), only.label),
+        (None, filter) => format!("{listed} of {all}: {}", filter.name()),
     };
     if !list.needle.is_empty() {
         said = format!("{said} with \"{}\"", list.needle);

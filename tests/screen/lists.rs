@@ -128,6 +128,8 @@ fn from_a_wrong_cell_to_what_tells_its_classes_apart() {
     assert_eq!((state.view, state.settings.class, state.opposed()), (View::Selection, truth, Some(decided)));
     let state = replies::served(state);
     compare("Apart-120x40", &drawn(&state, MEDIUM));
+    // The meaning of the signs is shortened, and no word of it cut, where there is little room.
+    assert!(drawn(&state, (80, 24)).lines().any(|line| line.contains("+ greater, − smaller") && !line.contains('…')));
     let mut state = state;
     update(&mut state, Action::Back);
     assert_eq!(state.view, View::Confusion);

@@ -64,7 +64,10 @@ impl Host {
         let solved = row.found.as_ref().and_then(|found| found.as_ref().ok());
         let mut defects: Vec<String> =
             row.facts.iter().flat_map(|facts| facts.survey.defects.iter().map(ToString::to_string)).collect();
-        defects.extend(solved.iter().flat_map(|solved| solved.found.spectrum.notes.iter().cloned()));
+        // What was asked for is no defect.
+        let asked = self.settings.problem().note();
+        let notes = solved.iter().flat_map(|solved| &solved.found.spectrum.notes);
+        defects.extend(notes.filter(|note| asked.as_ref() != Some(note)).cloned());
         ModelRow {
             name: model.name.clone(),
             path: model.path.clone(),

@@ -4,7 +4,9 @@
 //!  Figure 1: the first 100 eigenvalues of 1 Human
 //!  (a) variants, FEM         (b) variants, cot
 //!  1.0 ┤        ⢀⣠⠔          2.0 ┤       ⣀⠤⠒
-//!  a original   b rotated 0.0 %   c scaled by 2 0.0 %
+//!  mean change of λ against a     FEM    cot
+//!  a original
+//!  b bent by 60°                1.7 %  1.2 %
 //! ```
 
 use super::super::{
@@ -22,6 +24,11 @@ use crate::{
     report::paper::variation::{EIGENVALUES, Spectra, Variation, solves},
     workbench::State,
 };
+
+/// Columns of a variant and its change, at least and at most, and of a figure.
+const WIDE: u16 = 42;
+const WIDEST: u16 = 48;
+const FIGURE: u16 = 6;
 
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     let width = (pane.width() as usize).saturating_sub(2);
@@ -61,9 +68,7 @@ fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
     heading(pane, 0, &format!("Figure 1: the first {EIGENVALUES} eigenvalues of {model} {class}"), Note::Settled);
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
-    let differences = variation.differences();
-    let wide = 42;
-    let across = (rest.width / wide).max(1);
+    let across = (rest.width / WIDE).max(1);
     let lines = ((variation.variants.len() as u16).div_ceil(across) + 1).min(rest.height.saturating_sub(8));
     let list = pane::cut_bottom(&mut rest, lines);
     let columns = if rest.width >= 70 { 2 } else { 1 };
@@ -78,21 +83,35 @@ fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
             panel.draw(&mut pane.part(area));
         }
     }
-    let mut list = pane.part(list);
-    list.put(1, 0, "mean change of λ against a: FEM, cot", Role::Faint);
-    for (place, (spectra, [fem, cot])) in variation.variants.iter().zip(differences).enumerate() {
-        let (x, y) = ((place as u16 % across) * wide + 1, 1 + place as u16 / across);
-        list.put(x, y, &letter(place).to_string(), Role::Class(place));
-        let said = match (place, &spectra.why) {
-            (0, _) => String::new(),
-            (_, Some(why)) if fem.is_none() && cot.is_none() => format!(" {}", text::clean(why)),
-            _ => format!(" {}, {}", percent(fem), percent(cot)),
-        };
-        let room = wide as usize - 4;
-        let x =
-            list.put(x + 2, y, &text::fit(&spectra.name, room.saturating_sub(text::width(&said).min(24))), Role::Plain);
-        let room = wide.saturating_sub(x - place as u16 % across * wide) as usize;
-        list.put(x, y, &text::fit(&said, room), Role::Faint);
+    changes(variation, across, &mut pane.part(list));
+}
+
+/// What stands for each variant, and how far it is from the original, in so many columns beside each other.
+fn changes(variation: &Variation, across: u16, pane: &mut Pane<'_>) {
+    let wide = (pane.width() / across).min(WIDEST);
+    // The ends of the two figures.
+    let [fem_at, cot_at] = [FIGURE + 3, 1].map(|before| wide.saturating_sub(before));
+    let room = fem_at.saturating_sub(FIGURE + 3) as usize;
+    pane.put(1, 0, &text::fit("mean change of λ against a", room + 2), Role::Faint);
+    for column in 0..across {
+        pane.put_right(column * wide + fem_at, 0, "FEM", Role::Faint);
+        pane.put_right(column * wide + cot_at, 0, "cot", Role::Faint);
+    }
+    for (place, (spectra, [fem, cot])) in variation.variants.iter().zip(variation.differences()).enumerate() {
+        let (x, y) = ((place as u16 % across) * wide, 1 + place as u16 / across);
+        pane.put(x + 1, y, &letter(place).to_string(), Role::Class(place));
+        let end = pane.put(x + 3, y, &text::fit(&spectra.name, room), Role::Plain);
+        match &spectra.why {
+            Some(why) if fem.is_none() && cot.is_none() => {
+                let room = (x + cot_at).saturating_sub(end + 1) as usize;
+                pane.put(end + 1, y, &text::fit(&text::clean(why), room), Role::Faint);
+            }
+            _ if place > 0 => {
+                pane.put_right(x + fem_at, y, &percent(fem), Role::Faint);
+                pane.put_right(x + cot_at, y, &percent(cot), Role::Faint);
+            }
+            _ => {}
+        }
     }
 }
 

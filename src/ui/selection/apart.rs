@@ -54,8 +54,10 @@ pub(super) fn draw(state: &State, class: usize, other: usize, pane: &mut Pane<'_
     let high = (lines.len() as u16).min((rest.height / 3).max(1));
     let below = pane::cut_bottom(&mut rest, high + 1);
     let mut below = pane.part(below);
-    let key = format!("λ with + greater, − smaller in {}; 1: in all pairs", names::class(&state.answer, class));
-    below.put(1, 0, &text::fit(&key, room), Role::Faint);
+    let signs = format!("+ greater, − smaller in {}", names::class(&state.answer, class));
+    let keys = [format!("λ with {signs}; 1: in all pairs"), format!("{signs}; 1: in all pairs")];
+    let key = keys.iter().find(|key| text::width(key) <= room).unwrap_or(&signs);
+    below.put(1, 0, &text::fit(key, room), Role::Faint);
     for (y, line) in (1..=high).zip(&lines) {
         below.put(1, y, &text::fit(line, room), Role::Plain);
     }
