@@ -123,3 +123,38 @@ fn a_folder_is_needed() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--out"));
 }
+
+/// Where there are no queries every split is the same one and says nothing; a document made by other moves than the
+/// paper's still has the strict ones where it says so.
+#[test]
+fn readings_are_what_they_are_called_and_splits_need_queries() {
+    let folder = common::scratch();
+    let (data, out) = (folder.path().join("data"), folder.path().join("out"));
+    common::write_data(&data.join("train"), 3, 4);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tui"));
+    command.args(["report", "--study", "paper", "--threads", "2"]).arg(&data).arg("--out").arg(&out);
+    command.arg("--cache").arg(folder.path().join("cache"));
+    command.args(["--set", "kmax=12", "--set", "remesh=120", "--set", "T=3", "--set", "search=beam"]);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let files = files(&out);
+    let csv = |name: &str| String::from_utf8(files[name].clone()).unwrap();
+    let table = csv("table-2-hcbw.csv");
+    let place = |head: &str| table.lines().next().unwrap().split(',').position(|column| column == head).unwrap();
+    let ends = |row: &str| [place("splits from"), place("to")].map(|at| row.split(',').nth(at).unwrap().to_owned());
+    assert!(table.lines().skip(1).all(|row| ends(row) == ["", ""]), "{table}");
+    assert!(!csv("paper.md").contains("such splits"), "nothing is said of splits that are one");
+    let json: serde_json::Value = serde_json::from_slice(&files["paper.json"]).unwrap();
+    let spectra = json["spectra"].as_array().unwrap();
+    let mut compared = 0;
+    for row in csv("readings.csv").lines().filter(|row| row.starts_with("Table 4,") || row.starts_with("Table 2,")) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let figure = if cells[0] == "Table 2" { "error" } else { "adr" };
+        let searches = &spectra.iter().find(|rows| rows["name"] == cells[1]).unwrap()["splits"]["searches"];
+        let values: Vec<f64> = (0..3).map(|at| searches[at][figure].as_f64().unwrap()).collect();
+        let shown: Vec<f64> = cells[3..6].iter().map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(shown, values, "{row}");
+        compared += 1;
+    }
+    assert_eq!(compared, 12);
+}

@@ -377,6 +377,13 @@ fn in_the_middle_of_a_cold_run() {
         state.models.at = 209;
         compare(&format!("{}-partial", view.name()), &drawn(&state, SMALL));
     }
+    // What is told does not hide how far it is.
+    let mut state = sample::state(sample::partial());
+    update(&mut state, Action::Report("something is to be known".to_owned()));
+    let screen = drawn(&state, SMALL);
+    let progress = &state.answer.progress;
+    let done = format!("{}/{}", progress.ready + progress.out, progress.total);
+    assert!(screen.lines().any(|line| line.contains("something is to be known") && line.contains(&done)), "{screen}");
 }
 
 #[test]

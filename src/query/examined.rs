@@ -99,12 +99,17 @@ pub(crate) fn tuned_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Ar
 #[salsa::tracked(returns(clone), lru = 8)]
 pub(crate) fn split_rows<'db>(db: &'db dyn Db, cohort: Cohort<'db>) -> Result<Arc<Splits>, Failure> {
     let knobs = Knobs::get(db);
-    let (distance, rounds) = (knobs.distance(db), knobs.rounds(db));
+    let (distance, search) = (knobs.distance(db), knobs.search(db));
+    let (rounds, weak, stop) = (knobs.rounds(db), knobs.weak(db), knobs.stop(db));
     let sample = sample(db, of_width(db, cohort, knobs.kmax(db)))?;
-    let how = format!("{distance:?} {rounds} {SPLITS} with searches");
+    let mut how = format!("{distance:?} {rounds} {SPLITS} with searches");
+    if (search, weak, stop) != <_>::default() {
+        how = format!("{how} {search:?} {weak:?} {stop:?}");
+    }
     let key = Key::new("splits").number(EXAMINER).field(&digest(&sample)).field(how.as_bytes());
     trace(db).executed(Query::SplitRows);
-    kept(db, &key, || Ok(study::splits(&sample, distance, rounds, db.revoked()).unwrap_or_else(|_| leave(db))))
+    let find = || study::splits(&sample, distance, search, (rounds, weak, stop), db.revoked());
+    kept(db, &key, || Ok(find().unwrap_or_else(|_| leave(db))))
 }
 
 /// blake3 over all features and labels.

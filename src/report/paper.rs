@@ -21,7 +21,7 @@ use crate::{
     laplacian::Operator,
     query::{Answer, Cancelled, Finding, Host, ModelState, Question, Settings},
     spectrum::Normalisation,
-    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Splits, Table, Tuned},
+    study::{Boosted, Climbed, FirstK, Honest, Mark, Retrieved, Splits, Spread, Table, Tuned},
     watch::{Silent, Watch},
 };
 
@@ -121,6 +121,13 @@ pub struct Rows {
     pub marks: Arc<Vec<Vec<Mark>>>,
     /// The same tables on other splits of the models and by other readings, for spectra that the paper has.
     pub splits: Option<Arc<Splits>>,
+}
+
+impl Rows {
+    /// A figure on other splits; none where all splits are the same for want of queries.
+    fn spread(&self, of: fn(&Splits) -> Spread) -> Option<Spread> {
+        self.splits.as_deref().filter(|_| self.query > 0).map(of)
+    }
 }
 
 /// Why there is no document.

@@ -17,9 +17,9 @@ use crate::workbench::{Entry, Notice, Purpose, State, View, experiment::Document
 pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     match (&state.entry, &state.fatal, &state.notice) {
         (Some(entry), ..) => typing(state, entry, pane),
-        (None, Some(reason), _) => line(pane, "×", reason, Role::Bad),
-        (None, None, Some(Notice { text, bad: true, .. })) => line(pane, "×", text, Role::Bad),
-        (None, None, Some(Notice { text, bad: false, .. })) => line(pane, "·", text, Role::Plain),
+        (None, Some(reason), _) => line(state, pane, ("×", reason, Role::Bad)),
+        (None, None, Some(Notice { text, bad: true, .. })) => line(state, pane, ("×", text, Role::Bad)),
+        (None, None, Some(Notice { text, bad: false, .. })) => line(state, pane, ("·", text, Role::Plain)),
         (None, None, None) => match &state.experiment.document {
             Some(document) => writing(document, pane),
             None => progress(state, pane),
@@ -28,8 +28,15 @@ pub(super) fn draw(state: &State, pane: &mut Pane<'_>) {
     hints(state, pane);
 }
 
-fn line(pane: &mut Pane<'_>, mark: &str, text: &str, role: Role) {
-    let room = (pane.width() as usize).saturating_sub(4);
+fn line(state: &State, pane: &mut Pane<'_>, (mark, text, role): (&str, &str, Role)) {
+    let mut room = (pane.width() as usize).saturating_sub(4);
+    // Who waits for spectra sees that they come.
+    let progress = &state.answer.progress;
+    let solving = format!("{}/{}", progress.ready + progress.out, progress.total);
+    if progress.total > 0 && !progress.complete() && state.fatal.is_none() && room > 4 * solving.len() {
+        pane.put_right(pane.width().saturating_sub(1), 0, &solving, Role::Faint);
+        room -= solving.len() + 2;
+    }
     pane.spans(1, 0, [(mark, role), (" ", role), (&text::fit(text, room), role)]);
 }
 

@@ -24,49 +24,53 @@ pub(super) fn sections(head: &Head, rows: &[Rows]) -> Vec<Section> {
     sections
 }
 
-/// Another way to read the paper, and what it gives.
+/// The name of the reading that takes the paper at its word.
+const STRICT: &str = "strict";
+
+/// A way to read the paper, and what it gives.
 struct Reading {
     name: &'static str,
     value: f64,
 }
 
-/// The other readings of a table's figure.
-fn others(plan: &Plan, rows: &Rows) -> Vec<Reading> {
+/// The readings of a table's figure, the strict one first; none where there is one way to read the paper, or where
+/// nothing was computed.
+fn readings_of(plan: &Plan, rows: &Rows) -> Vec<Reading> {
+    let Some(splits) = rows.splits.as_deref() else { return Vec::new() };
     let climbs = |value: fn(&Searched) -> f64| {
         let reading = move |searched: &Searched| {
             let name = match searched.search {
-                Search::Strict => return None,
+                Search::Strict => STRICT,
                 Search::Level => "over level ground",
                 Search::Beam => "with a beam",
             };
-            Some(Reading { name, value: value(searched) })
+            Reading { name, value: value(searched) }
         };
-        rows.splits.iter().flat_map(|splits| &splits.searches).filter_map(reading).collect()
+        splits.searches.iter().map(reading).collect()
     };
     match plan.row {
         Row::FirstKError | Row::FirstKAdr => Vec::new(),
         Row::ClimbError => climbs(|searched| searched.error),
         Row::ClimbAdr => climbs(|searched| searched.adr),
-        Row::Boosted => rows.splits.as_deref().map_or_else(Vec::new, |splits| {
-            vec![
-                Reading { name: "decided by S as a share of its Σ α", value: splits.decisions.share },
-                Reading { name: "decided for the first class with S > 0", value: splits.decisions.first },
-            ]
-        }),
+        Row::Boosted => vec![
+            Reading { name: STRICT, value: (plan.entry)(rows).score.train },
+            Reading { name: "decided by S as a share of its Σ α", value: splits.decisions.share },
+            Reading { name: "decided for the first class with S > 0", value: splits.decisions.first },
+        ],
     }
 }
 
 /// Why a figure may differ, by what was computed to find out.
 fn reason(plan: &Plan, rows: &Rows, known: Published, ours: f64) -> String {
     let mut reasons = Vec::new();
-    if let Some(Spread { low, high, .. }) = rows.splits.as_deref().map(plan.spread) {
+    if let Some(Spread { low, high, .. }) = rows.spread(plan.spread) {
         let within = (low - ROUNDED..=high + ROUNDED).contains(&known.value);
         let verdict = if within { "the split may be why" } else { "the split is not why" };
         reasons.push(format!("{verdict}: other ones give {low:.3} to {high:.3}"));
     }
     // What does not show in print is no closer.
     let closer = |reading: &Reading| (reading.value - known.value).abs() + ROUNDED < (ours - known.value).abs();
-    let closest = others(plan, rows).into_iter().filter(closer);
+    let closest = readings_of(plan, rows).into_iter().filter(closer);
     let closest = closest.min_by(|a, b| (a.value - known.value).abs().total_cmp(&(b.value - known.value).abs()));
     if let Some(Reading { name, value }) = closest {
         reasons.push(format!("{name} it would be {value:.3}"));
@@ -142,11 +146,8 @@ fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
     let mut tally: Vec<(u32, &str, usize, usize)> = Vec::new();
     for plan in plans {
         for rows in rows {
-            let (Some(known), others) = (paper(plan, rows), others(plan, rows)) else { continue };
-            if others.is_empty() {
-                continue;
-            }
-            let strict = Reading { name: "strict", value: (plan.entry)(rows).score.train };
+            let (Some(known), all) = (paper(plan, rows), readings_of(plan, rows)) else { continue };
+            let [strict, others @ ..] = &all[..] else { continue };
             let apart = |reading: &Reading| (reading.value - known.value).abs();
             let values = others.iter().map(|reading| number(reading.value, 3)).collect::<Vec<_>>();
             let mut row = vec![
@@ -161,7 +162,7 @@ fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
             };
             row.extend(searches);
             row.extend(decisions);
-            for reading in std::iter::once(&strict).chain(&others) {
+            for reading in &all {
                 let near = usize::from(apart(reading) <= NOTABLE);
                 match tally.iter_mut().find(|(number, name, ..)| (*number, *name) == (plan.number, reading.name)) {
                     Some((.., all, few)) => (*all, *few) = (*all + 1, *few + near),
@@ -169,8 +170,7 @@ fn readings(plans: &[Plan], rows: &[Rows]) -> Option<Section> {
                 }
             }
             // The strict one is first, and taken where others are no closer.
-            let all = std::iter::once(&strict).chain(&others);
-            let closest = all.min_by(|a, b| apart(a).total_cmp(&apart(b)));
+            let closest = all.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
             row.push(Cell::Text(closest.map_or("", |closest| closest.name).to_owned()));
             row.push(maybe(closest.map(|closest| closest.value - known.value), 3));
             cells.push(row);

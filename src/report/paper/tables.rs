@@ -108,7 +108,7 @@ fn standing(plans: &[Plan], rows: &[Rows]) -> Option<String> {
     let (mut all, mut easier, mut harder) = (0_u32, 0_u32, 0_u32);
     for plan in plans {
         for rows in rows {
-            let Some(spread) = rows.splits.as_deref().map(plan.spread) else { continue };
+            let Some(spread) = rows.spread(plan.spread) else { continue };
             let ours = (plan.entry)(rows).score.train;
             let (below, above) = (ours < spread.low, ours > spread.high);
             let (better, worse) = if plan.figure == "ε" { (below, above) } else { (above, below) };
@@ -152,7 +152,7 @@ fn section(plan: &Plan, rows: &[Rows], rounds: usize, standing: Option<&str>) ->
             maybe(known.map(|known| score.train - known.value), 3),
             maybe(score.query, 3),
         ];
-        let spread = rows.splits.as_deref().map(plan.spread);
+        let spread = rows.spread(plan.spread);
         cells.extend([spread.map(|spread| spread.low), spread.map(|spread| spread.high)].map(|end| maybe(end, 3)));
         if plan.row == Row::Boosted {
             cells.push(number(rows.boosted.mean_ties, 2));

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     metrics::{Cancelled, Columns, Distance, Exam, Sample, gained, ranking, ranks, sums},
-    selection::{Cost, Ranges, Search, SelCount, Stop, Weak, boost_by, climb_by, decide, held_out, stop_at},
+    selection::{Cost, Ranges, Search, SelCount, Stop, Strong, Weak, boost_by, climb_by, decide, held_out, stop_at},
     study::first_k,
     watch::Watch,
 };
@@ -128,17 +128,29 @@ pub(super) fn nearest(sample: &Sample, distance: Distance, exam: Exam<'_>, selec
     Verdict { wrong, adr: Some(adr), selected: selection.len() as f64 }
 }
 
-fn boosted(
+/// How AdaBoost is run: rounds at most, what is asked of an eigenvalue, and when it ends.
+pub(super) type Boosting = (usize, Weak, Stop);
+
+/// AdaBoost's classifiers.
+pub(super) fn strong(
     sample: &Sample,
-    (rounds, weak, stop): (usize, Weak, Stop),
-    exams: &[Exam<'_>],
+    (rounds, weak, stop): Boosting,
     watch: &dyn Watch,
-) -> Result<Vec<Verdict>, Cancelled> {
+) -> Result<Vec<Strong>, Cancelled> {
     let rounds = match stop {
         Stop::Fixed => rounds,
         Stop::Early => stop_at(&held_out(sample, rounds, weak, watch)?, rounds),
     };
-    let strong = boost_by(sample, rounds, weak, watch)?;
+    boost_by(sample, rounds, weak, watch)
+}
+
+fn boosted(
+    sample: &Sample,
+    boosting: Boosting,
+    exams: &[Exam<'_>],
+    watch: &dyn Watch,
+) -> Result<Vec<Verdict>, Cancelled> {
+    let strong = strong(sample, boosting, watch)?;
     let ranges = Ranges::new(sample);
     let known: Vec<usize> = (0..sample.classes).filter(|&class| ranges.known(class)).collect();
     let selected: usize = known.iter().map(|&class| strong[class].selected(SelCount::Chosen)).sum();

@@ -3,10 +3,13 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::deal::pooled;
+use super::{
+    deal::pooled,
+    learner::{Boosting, strong},
+};
 use crate::{
     metrics::{Cancelled, Chance, Distance, Exam, Features, Sample, figures},
-    selection::{Cost, Ranges, Search, boost, climb, climb_by, decide},
+    selection::{Cost, Ranges, Search, Stop, Weak, climb_by, decide},
     study::{boosted, first_k},
     watch::{Silent, Watch},
 };
@@ -68,23 +71,30 @@ pub struct Decisions {
 }
 
 /// Draws D anew [`SPLITS`] times, of all models of D and Q as many of each class as D has, and computes the figures on
-/// it as the paper does, with `rounds` rounds of AdaBoost.
+/// it: hill climbing by the moves of `search`, AdaBoost with so many rounds at most, of such classifiers and to such an
+/// end.
 ///
 /// Without query models every D is the same one.
 ///
 /// # Errors
 /// [`Cancelled`] when the watch said so.
-pub fn splits(sample: &Sample, distance: Distance, rounds: usize, watch: &dyn Watch) -> Result<Splits, Cancelled> {
+pub fn splits(
+    sample: &Sample,
+    distance: Distance,
+    search: Search,
+    boosting: (usize, Weak, Stop),
+    watch: &dyn Watch,
+) -> Result<Splits, Cancelled> {
     let draw = |nth: usize| {
         let drawn = drawn(sample, Chance::new(SEED, STREAM + nth as u64));
         let curves = first_k(&drawn, distance, &Silent(watch))?;
         let climbed = |cost: Cost| {
-            let climb = climb(&drawn, distance, cost, &Silent(watch))?;
+            let climb = climb_by(&drawn, distance, cost, search, &Silent(watch))?;
             Ok(figures(Exam::leave_one_out(&drawn), distance, &climb.order()))
         };
         let error = curves.error.at(curves.best_error).map_or(1.0, |score| score.train);
         let adr = curves.adr.at(curves.best_adr).map_or(0.0, |score| score.train);
-        let boosted = boosted(&drawn, &boost(&drawn, rounds, &Silent(watch))?).error.train;
+        let boosted = boosted(&drawn, &strong(&drawn, boosting, &Silent(watch))?).error.train;
         Ok([error, climbed(Cost::Error)?.0, boosted, adr, climbed(Cost::Adr)?.1])
     };
     let found: Vec<[f64; 5]> = (0..SPLITS).into_par_iter().map(draw).collect::<Result<_, _>>()?;
@@ -104,7 +114,7 @@ pub fn splits(sample: &Sample, distance: Distance, rounds: usize, watch: &dyn Wa
         boosted: spread(2),
         first_k_adr: spread(3),
         climb_adr: spread(4),
-        decisions: decisions(sample, rounds, watch)?,
+        decisions: decisions(sample, boosting, watch)?,
         searches,
     })
 }
@@ -117,8 +127,8 @@ fn searched(sample: &Sample, distance: Distance, search: Search, watch: &dyn Wat
     Ok(Searched { search, error: climbed(Cost::Error)?.0, adr: climbed(Cost::Adr)?.1 })
 }
 
-fn decisions(sample: &Sample, rounds: usize, watch: &dyn Watch) -> Result<Decisions, Cancelled> {
-    let (classes, ranges) = (boost(sample, rounds, &Silent(watch))?, Ranges::new(sample));
+fn decisions(sample: &Sample, boosting: Boosting, watch: &dyn Watch) -> Result<Decisions, Cancelled> {
+    let (classes, ranges) = (strong(sample, boosting, &Silent(watch))?, Ranges::new(sample));
     let sums: Vec<f64> = classes.iter().map(|strong| strong.rounds.iter().map(|round| round.alpha).sum()).collect();
     let (mut share, mut first) = (0, 0);
     for (row, &label) in sample.train_labels.iter().enumerate() {
@@ -160,12 +170,15 @@ fn drawn(sample: &Sample, mut chance: Chance) -> Sample {
 
 #[cfg(test)]
 mod tests {
-    use super::{drawn, splits};
+    use super::{boosted, drawn, splits, strong};
     use crate::{
         metrics::{Cancelled, Chance, Distance, Features, Sample, samples::sample},
+        selection::{Search, Stop, Weak},
         study::first_k,
         watch::{Unwanted, Unwatched},
     };
+
+    const BOOSTING: (usize, Weak, Stop) = (5, Weak::Range, Stop::Fixed);
 
     #[test]
     fn a_split_has_as_many_of_each_class_and_differs_from_the_next() {
@@ -180,7 +193,7 @@ mod tests {
     fn without_queries_every_split_is_the_same() {
         let all = sample(3, 7, 8, 0);
         let alone = Sample { query: Features::default(), query_labels: Vec::new(), ..all.clone() };
-        let same = splits(&alone, Distance::L2, 5, &Unwatched).unwrap();
+        let same = splits(&alone, Distance::L2, Search::Strict, BOOSTING, &Unwatched).unwrap();
         let curves = first_k(&alone, Distance::L2, &Unwatched).unwrap();
         let error = curves.error.at(curves.best_error).unwrap().train;
         assert_eq!((same.first_k_error.low, same.first_k_error.high), (error, error));
@@ -188,8 +201,24 @@ mod tests {
         // Every model lies in the ranges of its own class, so no share is greater than that of the right one.
         assert!(same.decisions.share <= same.decisions.first && same.decisions.first <= 1.0);
         assert_eq!(same.searches[0].error, same.climb_error.low);
-        let spread = splits(&all, Distance::L2, 5, &Unwatched).unwrap().first_k_adr;
+        let spread = splits(&all, Distance::L2, Search::Strict, BOOSTING, &Unwatched).unwrap().first_k_adr;
         assert!(spread.low < spread.mean && spread.mean < spread.high, "{spread:?}");
-        assert_eq!(splits(&all, Distance::L2, 5, &Unwanted), Err(Cancelled));
+        assert_eq!(splits(&all, Distance::L2, Search::Strict, BOOSTING, &Unwanted), Err(Cancelled));
+    }
+
+    #[test]
+    fn splits_are_computed_as_the_table_that_they_stand_in() {
+        let all = sample(3, 7, 8, 0);
+        let alone = Sample { query: Features::default(), query_labels: Vec::new(), ..all };
+        for search in Search::ALL {
+            let found = splits(&alone, Distance::L1, search, BOOSTING, &Unwatched).unwrap();
+            let own = found.searches.iter().find(|searched| searched.search == search).unwrap();
+            assert_eq!((found.climb_error.low, found.climb_adr.high), (own.error, own.adr));
+        }
+        for boosting in [(5, Weak::Threshold, Stop::Fixed), (5, Weak::Interval, Stop::Early)] {
+            let found = splits(&alone, Distance::L1, Search::Strict, boosting, &Unwatched).unwrap();
+            let classes = strong(&alone, boosting, &Unwatched).unwrap();
+            assert_eq!(found.boosted.low, boosted(&alone, &classes).error.train);
+        }
     }
 }
