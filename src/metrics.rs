@@ -27,7 +27,7 @@ pub use self::{
 };
 pub(crate) use self::{
     columns::Columns,
-    distance::{Chi2, L1, L2, Term, Wesd2, Wesd15, by_distance},
+    distance::{Chi2, L1, L2, RELATIVELY, Term, Wesd2, Wesd15, by_distance},
     found::{gained, gained_with_itself, precision, ranking, ranks, sums},
     lanes::{add_where_u32s, add_where_u64s, count_u32s},
     nearest::{Nearest, before},

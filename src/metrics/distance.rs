@@ -3,6 +3,10 @@
 use pulp::Simd;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use single::RELATIVELY;
+
+mod single;
+
 /// The distance between the selected features of two models.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -80,6 +84,13 @@ pub(crate) trait Term: Copy + Send + Sync {
 
     /// The same in every lane, to the last bit.
     fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s;
+
+    /// The values of one feature in single precision, and how much [`Term::single_terms`] of two of them is off their
+    /// term at most, beside [`RELATIVELY`] so much. None where that is not known.
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)>;
+
+    /// The terms of values in single precision.
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s;
 }
 
 #[derive(Clone, Copy)]
@@ -107,6 +118,16 @@ impl Term for L2 {
         let difference = simd.sub_f64s(a, b);
         simd.mul_f64s(difference, difference)
     }
+
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)> {
+        single::for_squares(values)
+    }
+
+    #[inline(always)]
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+        let difference = simd.sub_f32s(a, b);
+        simd.mul_f32s(difference, difference)
+    }
 }
 
 impl Term for L1 {
@@ -120,6 +141,15 @@ impl Term for L1 {
     #[inline(always)]
     fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
         simd.abs_f64s(simd.sub_f64s(a, b))
+    }
+
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)> {
+        single::for_differences(values)
+    }
+
+    #[inline(always)]
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+        simd.abs_f32s(simd.sub_f32s(a, b))
     }
 }
 
@@ -135,6 +165,19 @@ impl Term for Chi2 {
         let total = simd.add_f64s(simd.abs_f64s(a), simd.abs_f64s(b));
         let zero = simd.splat_f64s(0.0);
         simd.select_f64s(simd.greater_than_f64s(total, zero), simd.div_f64s(L2::terms(simd, a, b), total), zero)
+    }
+
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)> {
+        single::for_ratios(values)
+    }
+
+    #[inline(always)]
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+        let total = simd.add_f32s(simd.abs_f32s(a), simd.abs_f32s(b));
+        let (difference, zero) = (simd.sub_f32s(a, b), simd.splat_f32s(0.0));
+        // The square alone might be too small a number.
+        let term = simd.mul_f32s(difference, simd.div_f32s(difference, total));
+        simd.select_f32s(simd.greater_than_f32s(total, zero), term, zero)
     }
 }
 
@@ -177,6 +220,16 @@ impl Term for Wesd15 {
         let ratio = spectrals(simd, a, b);
         simd.mul_f64s(ratio, simd.sqrt_f64s(ratio))
     }
+
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)> {
+        single::for_inverse_powers(values)
+    }
+
+    #[inline(always)]
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+        let ratio = L1::single_terms(simd, a, b);
+        simd.mul_f32s(ratio, simd.sqrt_f32s(ratio))
+    }
 }
 
 impl Term for Wesd2 {
@@ -194,6 +247,15 @@ impl Term for Wesd2 {
     fn terms<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> S::f64s {
         let ratio = spectrals(simd, a, b);
         simd.mul_f64s(ratio, ratio)
+    }
+
+    fn singles(values: &[f64]) -> Option<(Vec<f32>, f64)> {
+        single::for_inverse_squares(values)
+    }
+
+    #[inline(always)]
+    fn single_terms<S: Simd>(simd: S, a: S::f32s, b: S::f32s) -> S::f32s {
+        L2::single_terms(simd, a, b)
     }
 }
 

@@ -28,6 +28,7 @@ mod order;
 mod race;
 mod row;
 mod search;
+mod single;
 mod sketch;
 
 /// What hill climbing minimises.
@@ -211,6 +212,29 @@ mod tests {
                     for cost in [Cost::Error, Cost::Adr] {
                         let climb = climb(&sample, distance, cost, &Unwatched).unwrap();
                         assert_eq!(climb, by_definition(&sample, distance, cost), "{seed} {distance:?} {cost:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn features_of_any_size_climb_as_defined() {
+        for seed in 0..3 {
+            let plain = sample(seed, 9, 10, 0);
+            for (from, size) in [(1e5, 1.0), (0.0, 1e-25), (0.0, 1e-60), (0.0, 1e25), (0.0, 1e170), (3.0, 1e-3)] {
+                // Some columns stay as they are: sums are made of both.
+                let rows = (0..plain.train.rows()).map(|row| {
+                    let features = plain.train.row(row).iter().enumerate();
+                    features
+                        .map(|(col, value)| if col % 4 == 3 { *value } else { from + size * value })
+                        .collect::<Vec<_>>()
+                });
+                let sample = Sample { train: Features::from_rows(rows), ..plain.clone() };
+                for distance in Distance::ALL {
+                    for cost in [Cost::Error, Cost::Adr] {
+                        let climb = climb(&sample, distance, cost, &Unwatched).unwrap();
+                        assert_eq!(climb, by_definition(&sample, distance, cost), "{seed} {from} {size} {distance:?}");
                     }
                 }
             }

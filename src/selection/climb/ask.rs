@@ -89,8 +89,8 @@ impl<T: Term> Ask<'_, T> {
     /// for all, their losses are at least those that come with them.
     #[inline(always)]
     fn sketch<S: Simd>(&self, simd: S, indices: &[u32]) -> Result<(Vec<Option<Outcome>>, Vec<u128>), Cancelled> {
-        let Ground { rows, asked, judge, columns, .. } = self.ground;
-        let mut sketch = Sketch::<S>::new(simd, columns, indices, rows.len());
+        let Ground { rows, asked, judge, singles, .. } = self.ground;
+        let mut sketch = Sketch::<S>::new(simd, singles, indices);
         let unit = judge.rough_unit();
         let asked = self.habits.order(indices, asked);
         let mut losses = [0; sketch::LANES];
@@ -111,7 +111,7 @@ impl<T: Term> Ask<'_, T> {
                 seen.push(lost);
             }
             let bound = self.bound.mark();
-            for (roughly, loss) in roughly.iter_mut().zip(Sketch::<S>::by_candidate(&losses)) {
+            for (roughly, loss) in roughly.iter_mut().zip(losses) {
                 *roughly = u128::from(loss) * unit;
             }
             let beaten = |(&index, &loss): (&u32, &u128)| (loss, index) >= bound;
@@ -125,9 +125,9 @@ impl<T: Term> Ask<'_, T> {
             }
         }
         for (at, &index) in indices.iter().enumerate() {
-            let (mut of_index, lane) = (self.habits.of(index), Sketch::<S>::lane(at));
+            let mut of_index = self.habits.of(index);
             for (&model, lost) in asked.iter().zip(&seen) {
-                of_index[model as usize] = lost[lane];
+                of_index[model as usize] = lost[at];
             }
         }
         Ok((outcomes, roughly))

@@ -1,6 +1,6 @@
 //! The distances under a selection, and what one eigenvalue more or fewer would make of them.
 
-use std::marker::PhantomData;
+use std::{marker::PhantomData, sync::Arc};
 
 use rayon::prelude::*;
 
@@ -11,6 +11,7 @@ use super::{
     line::{Line, RoughLosses},
     race::{Bound, Outcome},
     row::Row,
+    single::Singles,
 };
 use crate::{
     metrics::{Cancelled, Columns, Features, Nearest, Sample, Term},
@@ -26,6 +27,7 @@ pub(super) struct Ground<'a, T> {
     sample: &'a Sample,
     pub(super) judge: &'a Judge<'a>,
     pub(super) columns: Columns,
+    pub(super) singles: Arc<Singles>,
     /// In the order in which they were added, which is the order in which sums are built up: a sum does not depend on
     /// which candidates were tried.
     selected: Vec<u32>,
@@ -40,9 +42,10 @@ impl<'a, T: Term> Ground<'a, T> {
     pub(super) fn new(sample: &'a Sample, judge: &'a Judge<'a>) -> Self {
         let columns = Columns::new(&sample.train);
         let models = sample.train.rows();
+        let singles = Arc::new(Singles::new::<T>(&columns, models));
         let rows = vec![Row::new(columns.stride()); models];
         let asked = (0..models as u32).collect();
-        let mut ground = Self { sample, judge, columns, selected: Vec::new(), rows, asked, term: PhantomData };
+        let mut ground = Self { sample, judge, columns, singles, selected: Vec::new(), rows, asked, term: PhantomData };
         ground.refresh(None);
         ground
     }

@@ -2,7 +2,7 @@
 
 use std::{iter::once, sync::OnceLock};
 
-use super::{judge::Judge, order::ascending};
+use super::{judge::Judge, order::ascending, single::of_relative};
 use crate::metrics::before;
 
 /// Strangers that are kept in order.
@@ -15,6 +15,11 @@ pub(super) struct Row {
     pub(super) sums: Vec<f64>,
     /// The nearest models of other classes, up to [`NEAR`], nearest first.
     pub(super) near: Vec<(f64, u32)>,
+    /// The same in single precision, as are all distances of a
+    /// [`Sketch`](super::sketch::Sketch).
+    pub(super) strangers: Vec<(f32, u32)>,
+    /// The other models of its class in single precision.
+    pub(super) kin: Vec<(f32, u32)>,
     /// The other models of other classes, in any order, once they are looked at.
     far: OnceLock<Vec<(f64, u32)>>,
     /// Its loss, roughly: it says whom to ask first.
@@ -24,7 +29,14 @@ pub(super) struct Row {
 impl Row {
     /// For rows of `stride` sums; nothing is known yet.
     pub(super) fn new(stride: usize) -> Self {
-        Self { sums: vec![0.0; stride], near: Vec::new(), far: OnceLock::new(), loss: 1 }
+        Self {
+            sums: vec![0.0; stride],
+            near: Vec::new(),
+            strangers: Vec::new(),
+            kin: Vec::new(),
+            far: OnceLock::new(),
+            loss: 1,
+        }
     }
 
     /// Forgets all but the sums.
@@ -83,7 +95,11 @@ impl Row {
         }
         let order = ascending(self.near.len(), |at| self.near[at].0);
         self.near = order.into_iter().take(NEAR).map(|at| self.near[at as usize]).collect();
+        self.strangers.clear();
+        self.strangers.extend(self.near.iter().map(|&(sum, other)| (sum as f32, other)));
         let relatives = judge.class(model).iter().filter(|&&other| other as usize != model);
+        self.kin.clear();
+        self.kin.extend(relatives.clone().map(|&other| (of_relative(sums[other as usize]), other)));
         let mut relatives: Vec<f64> = relatives.map(|&other| sums[other as usize]).collect();
         relatives.sort_unstable_by(f64::total_cmp);
         let (credits, whole) = judge.rough_credits(model);

@@ -1,16 +1,20 @@
 //! Many candidates at once, roughly: twice as many as a [`Block`](super::block::Block) holds.
 //!
-//! Distances are computed as they are and then cut to the upper half of their bits. As integers these are in the order
-//! of the distances, which are not negative: what is less when cut was less before. A stranger is counted before a
-//! relative only when it is less when cut, so that the losses are those of [`LEAST`](super::block::LEAST) or a little
+//! Distances are computed in single precision. A stranger is counted before a relative only when it is nearer by more
+//! than both may be [off](Singles::margin), so that the losses are those of [`LEAST`](super::block::LEAST) or a little
 //! less: never more than the true ones. That is enough to give up on nearly all candidates.
 
 use std::hint::black_box;
 
 use pulp::{Simd, bytemuck::cast};
 
-use super::{Cost, block::side_by_side, judge::Judge, row::Row};
-use crate::metrics::{Columns, Term, add_where_u32s};
+use super::{
+    Cost,
+    judge::Judge,
+    row::Row,
+    single::{SHORTENED, Singles},
+};
+use crate::metrics::{Term, add_where_u32s};
 
 /// The lanes of the widest vector.
 pub(super) const LANES: usize = 16;
@@ -22,43 +26,37 @@ const CHUNK: usize = 8;
 /// A loss for each lane, in [`Judge::rough_unit`]s.
 pub(super) type Losses = [u64; LANES];
 
-/// The features of as many candidates as two vectors have lanes.
+/// The features of as many candidates as a vector has lanes.
 pub(super) struct Sketch<S: Simd> {
-    /// By model. The first vector's candidates are in the odd lanes of what is cut, the second's in the even ones.
-    values: Vec<[S::f64s; 2]>,
-    odd: S::m32s,
-    relatives: Vec<S::u32s>,
-    before: Vec<S::u32s>,
+    /// By model.
+    values: Vec<S::f32s>,
+    margins: S::f32s,
+    /// The distances of the relatives of the model asked, shortened and less the margins.
+    relatives: [S::f32s; RANKS],
+    /// How many strangers come before each of them, as far as they have been counted.
+    before: [S::u32s; RANKS],
 }
 
 impl<S: Simd> Sketch<S> {
-    /// Whether the lanes of this machine can be halved, and the classes are small enough.
+    /// Whether a vector holds more candidates than a block's, and the classes are small enough.
     pub(super) fn fits(judge: &Judge<'_>) -> bool {
-        S::F32_LANES == 2 * S::F64_LANES && cfg!(target_endian = "little") && judge.fits_tables()
+        S::F32_LANES > S::F64_LANES && judge.fits_tables()
     }
 
     /// For the features `indices` (from 1), at most as many as there are lanes.
     #[inline(always)]
-    pub(super) fn new(simd: S, columns: &Columns, indices: &[u32], models: usize) -> Self {
-        let values = side_by_side(columns, indices, 2 * S::F64_LANES, models);
-        let (vectors, _) = S::as_simd_f64s(&values);
-        let (pairs, _) = vectors.as_chunks::<2>();
-        let parity: Vec<u32> = (0..S::F32_LANES as u32).map(|lane| lane % 2).collect();
-        let odd = simd.equal_u32s(simd.partial_load_u32s(&parity), simd.splat_u32s(1));
-        Self { values: pairs.to_vec(), odd, relatives: Vec::new(), before: Vec::new() }
-    }
-
-    /// The lane of the candidate at `at`.
-    #[inline(always)]
-    pub(super) const fn lane(at: usize) -> usize {
-        let half = S::F64_LANES;
-        if at < half { 2 * at + 1 } else { 2 * (at - half) }
-    }
-
-    /// The loss of each candidate.
-    #[inline(always)]
-    pub(super) fn by_candidate(losses: &Losses) -> impl Iterator<Item = u64> {
-        (0..2 * S::F64_LANES).map(move |at| losses[Self::lane(at)])
+    pub(super) fn new(simd: S, singles: &Singles, indices: &[u32]) -> Self {
+        let values = singles.side_by_side(indices, S::F32_LANES);
+        let mut margins = [f32::MAX; LANES];
+        for (margin, &index) in margins.iter_mut().zip(indices) {
+            *margin = singles.margin(index);
+        }
+        Self {
+            values: S::as_simd_f32s(&values).0.to_vec(),
+            margins: simd.partial_load_f32s(&margins[..S::F32_LANES]),
+            relatives: [simd.splat_f32s(0.0); RANKS],
+            before: [simd.splat_u32s(0); RANKS],
+        }
     }
 
     /// Adds what one model asked loses at least under each of the candidates.
@@ -71,13 +69,8 @@ impl<S: Simd> Sketch<S> {
         judge: &Judge<'_>,
         losses: &mut Losses,
     ) {
-        self.relatives.clear();
-        for &model in judge.class(asked) {
-            if model as usize != asked {
-                self.relatives.push(self.cut::<T>(simd, asked, (row.sums[model as usize], model)));
-            }
-        }
-        if self.relatives.is_empty() {
+        let mut count = row.kin.len();
+        if count == 0 {
             // Nothing right is there to be found, or nothing to be lost.
             let lost = u64::from(judge.cost() == Cost::Error);
             for loss in losses {
@@ -85,22 +78,26 @@ impl<S: Simd> Sketch<S> {
             }
             return;
         }
+        let (own, shortened) = (self.values[asked], simd.splat_f32s(SHORTENED));
+        for (relative, &kin) in self.relatives.iter_mut().zip(&row.kin) {
+            let sums = sums::<S, T>(simd, own, &self.values, kin);
+            *relative = simd.sub_f32s(simd.mul_f32s(sums, shortened), self.margins);
+        }
         if judge.cost() == Cost::Error {
             // The nearest alone matters.
-            let mut nearest = self.relatives[0];
-            for &sums in &self.relatives[1..] {
-                nearest = simd.min_u32s(nearest, sums);
+            for at in 1..count {
+                self.relatives[0] = simd.min_f32s(self.relatives[0], self.relatives[at % RANKS]);
             }
-            self.relatives.clear();
-            self.relatives.push(nearest);
+            count = 1;
         } else {
             for &(a, b) in judge.network(asked) {
-                let (low, high) = (self.relatives[a as usize], self.relatives[b as usize]);
-                self.relatives[a as usize] = simd.min_u32s(low, high);
-                self.relatives[b as usize] = simd.max_u32s(low, high);
+                let (a, b) = (a as usize % RANKS, b as usize % RANKS);
+                let (low, high) = (self.relatives[a], self.relatives[b]);
+                self.relatives[a] = simd.min_f32s(low, high);
+                self.relatives[b] = simd.max_f32s(low, high);
             }
         }
-        let live = self.count::<T>(simd, asked, row);
+        let live = self.count::<T>(simd, own, row, count);
         let ((credits, whole), filled) = (judge.rough_credits(asked), judge.class(asked).len());
         let mut gained = simd.splat_u32s(0);
         for (nth, &before) in (0..).zip(&self.before[..live]) {
@@ -114,59 +111,54 @@ impl<S: Simd> Sketch<S> {
         }
     }
 
-    /// The distances to a model that is `sum` away without the candidates, cut.
+    /// Counts, for each of `count` relatives, the strangers before it. Returns how many of the nearest relatives are
+    /// among the first Q of any lane.
     #[inline(always)]
-    fn cut<T: Term>(&self, simd: S, asked: usize, (sum, model): (f64, u32)) -> S::u32s {
-        let sum = simd.splat_f64s(sum);
-        let ([a, b], [c, d]) = (self.values[asked], self.values[model as usize]);
-        let one = as_u32s(simd, simd.add_f64s(sum, T::terms(simd, a, c)));
-        let two = as_u32s(simd, simd.add_f64s(sum, T::terms(simd, b, d)));
-        simd.select_u32s(self.odd, one, simd.rotate_left_u32s(two, 1))
-    }
-
-    /// Counts, for each relative, the strangers before it. Returns how many of the nearest relatives are among the
-    /// first Q of any lane.
-    #[inline(always)]
-    fn count<T: Term>(&mut self, simd: S, asked: usize, row: &Row) -> usize {
-        let count = self.relatives.len();
-        self.before.clear();
-        self.before.resize(count, simd.splat_u32s(0));
+    fn count<T: Term>(&mut self, simd: S, own: S::f32s, row: &Row, count: usize) -> usize {
+        let Self { values, relatives, before, .. } = self;
+        let (relatives, before) = (&relatives[..count], &mut before[..count]);
+        before.fill(simd.splat_u32s(0));
         // Were it known to be one, masks would be made numbers to be subtracted: one instruction more.
         let one = simd.splat_u32s(black_box(1));
         // The relatives before `first` are nearer than any stranger left.
         let (mut first, mut live) = (0, count);
-        for chunk in row.near.chunks(CHUNK) {
-            while live > 0 && none::<S>(simd, self.matter(simd, live - 1)) {
+        for chunk in row.strangers.chunks(CHUNK) {
+            while live > 0 && none::<S>(simd, matter(simd, before[live - 1], count - live + 1)) {
                 live -= 1;
             }
-            let near = simd.splat_u32s((chunk[0].0.to_bits() >> 32) as u32);
-            while first < live && none::<S>(simd, simd.greater_than_or_equal_u32s(self.relatives[first], near)) {
+            let near = simd.splat_f32s(chunk[0].0);
+            while first < live && none::<S>(simd, simd.greater_than_or_equal_f32s(relatives[first], near)) {
                 first += 1;
             }
             if first == live {
                 return live;
             }
-            let mut strangers = [simd.splat_u32s(u32::MAX); CHUNK];
-            for (sums, &stranger) in strangers.iter_mut().zip(chunk) {
-                *sums = self.cut::<T>(simd, asked, stranger);
+            let mut strangers = [simd.splat_f32s(f32::INFINITY); CHUNK];
+            for (stranger, &of) in strangers.iter_mut().zip(chunk) {
+                *stranger = sums::<S, T>(simd, own, values, of);
             }
-            for (before, &relative) in self.before[first..live].iter_mut().zip(&self.relatives[first..live]) {
+            for (before, &relative) in before[first..live].iter_mut().zip(&relatives[first..live]) {
                 let mut count = *before;
                 for &stranger in &strangers {
-                    let less = simd.less_than_u32s(stranger, relative);
-                    count = add_where_u32s(simd, less, count, one);
+                    count = add_where_u32s(simd, simd.less_than_f32s(stranger, relative), count, one);
                 }
                 *before = count;
             }
         }
         live
     }
+}
 
-    /// The lanes in which the relative at `at` is still among the first Q.
-    #[inline(always)]
-    fn matter(&self, simd: S, at: usize) -> S::m32s {
-        simd.less_than_u32s(self.before[at], simd.splat_u32s((self.relatives.len() - at) as u32))
-    }
+/// The distances, under the candidates, of a model that is `sum` away without them to one with the features `own`.
+#[inline(always)]
+fn sums<S: Simd, T: Term>(simd: S, own: S::f32s, values: &[S::f32s], (sum, model): (f32, u32)) -> S::f32s {
+    simd.add_f32s(simd.splat_f32s(sum), T::single_terms(simd, own, values[model as usize]))
+}
+
+/// The lanes in which a relative is still among the first Q, when those and itself that come no nearer are `rest`.
+#[inline(always)]
+fn matter<S: Simd>(simd: S, before: S::u32s, rest: usize) -> S::m32s {
+    simd.less_than_u32s(before, simd.splat_u32s(rest as u32))
 }
 
 /// The entries of a table that is 0 from the entry `filled` on.
@@ -189,12 +181,6 @@ fn look_up<S: Simd>(simd: S, table: &[u32; RANKS], at: S::u32s, filled: usize) -
         *found = table[place as usize % RANKS];
     }
     simd.partial_load_u32s(&found[..S::U32_LANES])
-}
-
-/// The same bits.
-#[inline(always)]
-fn as_u32s<S: Simd>(simd: S, a: S::f64s) -> S::u32s {
-    cast(simd.transmute_u64s_f64s(a))
 }
 
 #[inline(always)]
