@@ -18,6 +18,7 @@ mod sample;
 mod themes;
 
 use std::{
+    collections::HashSet,
     sync::Arc,
     time::{Duration, Instant},
 };
@@ -361,6 +362,26 @@ fn a_narrow_screen_has_its_parameters_in_a_strip() {
     compare("Models-44x14", &drawn(&shown(sample::state(sample::full()), View::Models), (44, 14)));
     compare("Tables-30x8", &drawn(&shown(sample::state(sample::full()), View::Tables), (30, 8)));
     compare("too-small-20x5", &drawn(&sample::state(sample::full()), (20, 5)));
+}
+
+/// A number without its last digits would be another one.
+#[test]
+fn no_figure_is_cut_on_a_narrow_screen() {
+    for view in View::ALL {
+        let state = replies::served(shown(sample::state(sample::full()), view));
+        let wide = |columns| drawn(&state, (columns, 60)).split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let whole: HashSet<String> = (120..200).flat_map(wide).collect();
+        for size in (20..120).flat_map(|columns| [12, 24, 40].map(|rows| (columns, rows))) {
+            let screen = drawn(&state, size);
+            // Where a line is full, its last word may be less than it was.
+            for line in screen.lines().filter(|line| line.trim_end().width() == usize::from(size.0)) {
+                let word = line.split_whitespace().last().unwrap_or_default();
+                let is_number = word.contains('.') && word.chars().all(|c| c.is_ascii_digit() || ".–".contains(c));
+                let is_cut = !whole.contains(word) && whole.iter().any(|longer| longer.starts_with(word));
+                assert!(!is_number || !is_cut, "{word} at {size:?} in {view:?}: {line}");
+            }
+        }
+    }
 }
 
 #[test]

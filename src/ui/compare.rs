@@ -133,7 +133,8 @@ fn line(pane: &mut Pane<'_>, y: u16, name: &str, values: [Option<f64>; 4], selec
         let role = if column % 2 == 0 { Role::Train } else { Role::Query };
         pane.put_right(NAME + FIGURE * (column + 1), y, &number::ratio(value), role);
     }
-    pane.put(NAME + FIGURE * 4 + 2, y, selected, Role::Plain);
+    let after = NAME + FIGURE * 4 + 2;
+    pane.put(after, y, &text::fit(selected, pane.width().saturating_sub(after) as usize), Role::Plain);
 }
 
 /// What the differences and p are.

@@ -119,7 +119,10 @@ pub(super) fn chart(state: &State, figure: Figure, pane: &mut Pane<'_>, small: b
         let roomy = pane.width() >= 70;
         let (word, gap) = if roomy { ("best at ", "     ● ") } else { ("", "  ● ") };
         let at_best = format!("{word}k {best}: {}", both(curve.at(best)));
-        pane.spans(1, 1, [("◆ ", Role::Strong), (&at_best, Role::Plain), (gap, Role::Strong), (&at_k, Role::Plain)]);
+        let room = (pane.width() as usize).saturating_sub(3);
+        let x =
+            pane.spans(1, 1, [("◆ ", Role::Strong), (&text::fit(&at_best, room), Role::Plain), (gap, Role::Strong)]);
+        pane.put(x, 1, &text::fit(&at_k, pane.width().saturating_sub(x) as usize), Role::Plain);
     }
     let mut area = pane.area();
     pane::cut_top(&mut area, if small { 1 } else { 2 });

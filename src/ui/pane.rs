@@ -90,8 +90,12 @@ impl<'a> Pane<'a> {
         spans.into_iter().fold(x, |x, (text, role)| self.put(x, y, text, role))
     }
 
-    /// Writes text that ends at the column before `end`; cuts it when it is longer than `end`.
+    /// Writes text that ends at the column before `end`; cuts it when it is longer than `end`. Writes nothing where the
+    /// end lies beyond the pane: without its last digits a number would be another one.
     pub(super) fn put_right(&mut self, end: u16, y: u16, text: &str, role: Role) {
+        if end > self.area.width {
+            return;
+        }
         let text = text::fit(text, end as usize);
         let x = end - text::width(&text) as u16;
         self.put(x, y, &text, role);
@@ -191,6 +195,7 @@ mod tests {
         part.put(9, 0, "right", Role::Plain);
         part.dot(3, 0, 'x', Style::new());
         part.put_right(2, 0, "12345", Role::Plain);
+        part.put_right(4, 0, "0.7", Role::Plain);
         part.paint(Rect::new(0, 0, 99, 99), Style::new().add_modifier(Modifier::BOLD));
         assert_eq!(buffer[(1, 1)].symbol(), " ");
         assert_eq!((2..6).map(|x| buffer[(x, 1)].symbol()).collect::<String>(), "1…c ");

@@ -125,7 +125,7 @@ fn strongest(state: &State, pane: &mut Pane<'_>) {
         let (full, _) = footer::bar(mark.alpha / most, 5);
         let index = text::right(&mark.index.to_string(), 4);
         let alpha = text::right(&format!("{:.2}", mark.alpha), 6);
-        pane.spans(
+        let x = pane.spans(
             x,
             y,
             [
@@ -134,11 +134,15 @@ fn strongest(state: &State, pane: &mut Pane<'_>) {
                 (" ", Role::Plain),
                 (text::left(&full, 5).as_str(), Role::Train),
                 (" ", Role::Plain),
-                (number::short(mark.low).as_str(), Role::Plain),
-                ("–", Role::Faint),
-                (number::short(mark.high).as_str(), Role::Plain),
             ],
         );
+        let (low, high) = (number::short(mark.low), number::short(mark.high));
+        let room = pane.width().saturating_sub(x) as usize;
+        if text::width(&low) + 1 + text::width(&high) <= room {
+            pane.spans(x, y, [(low.as_str(), Role::Plain), ("–", Role::Faint), (high.as_str(), Role::Plain)]);
+        } else {
+            pane.put(x, y, &text::fit(&format!("{low}–{high}"), room), Role::Plain);
+        }
     }
     if stale(state) {
         pane.fade();
