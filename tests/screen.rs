@@ -364,6 +364,17 @@ fn a_narrow_screen_has_its_parameters_in_a_strip() {
     compare("too-small-20x5", &drawn(&sample::state(sample::full()), (20, 5)));
 }
 
+#[test]
+fn a_great_weight_keeps_its_distance_from_the_index() {
+    let mut state = shown(sample::state(sample::full()), View::Selection);
+    let answer = Arc::make_mut(&mut state.answer);
+    let mut marks = answer.marks.value.as_deref().cloned().unwrap();
+    let mark = &mut marks[state.settings.class][0];
+    (mark.index, mark.alpha) = (2, 230.26);
+    answer.marks.value = Some(Arc::new(marks));
+    assert!(drawn(&state, SMALL).contains(" 2   230 "), "{}", drawn(&state, SMALL));
+}
+
 /// A number without its last digits would be another one.
 #[test]
 fn no_figure_is_cut_on_a_narrow_screen() {

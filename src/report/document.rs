@@ -16,7 +16,8 @@ mod make;
 pub struct Origin<'a> {
     /// The data set's folder as the user wrote it.
     pub root: &'a str,
-    /// The data set's own warnings: files passed over. Further warnings of the answer belong to the run.
+    /// What is to be known of the data set: files passed over, classes without models. Warnings of the answer belong to
+    /// the run.
     pub passed_over: &'a [String],
     /// Wall-clock time of the run, seconds.
     pub seconds: f64,

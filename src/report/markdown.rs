@@ -96,7 +96,7 @@ fn head(document: &Document, text: &mut String) {
         let _ = writeln!(text, "- Unfinished: {} not computed yet", count(waiting, "model", "models"));
     }
     for warning in &document.warnings {
-        let _ = writeln!(text, "- Passed over: {}", escape(warning));
+        let _ = writeln!(text, "- Note: {}", escape(warning));
     }
 }
 

@@ -65,7 +65,7 @@ fn head(document: &Document, text: &mut String) {
         let _ = writeln!(text, "Unfinished  {} not computed yet", count(waiting, "model", "models"));
     }
     for warning in &document.warnings {
-        let _ = writeln!(text, "Passed over {}", plain(warning));
+        let _ = writeln!(text, "Note        {}", plain(warning));
     }
 }
 

@@ -224,8 +224,9 @@ fn most_confused(state: &State, matrix: &Matrix, fits: &dyn Fn(&str) -> bool) ->
 
 /// The fullest wrong cells.
 fn worst(state: &State, matrix: &Matrix, pane: &mut Pane<'_>) {
-    let said = format!("{} of {} in the wrong class", matrix.wrong, matrix.total);
     let wide = (pane.width() as usize).saturating_sub(2);
+    let said = format!("{} of {} in the wrong class", matrix.wrong, matrix.total);
+    let said = if text::width(&said) <= wide { said } else { format!("{} of {} wrong", matrix.wrong, matrix.total) };
     pane.put(1, 0, &text::fit(&said, wide), Role::Strong);
     let lines = text::wrap(&most_confused(state, matrix, &|said| text::wrap(said, wide).len() <= 2), wide);
     let high = if pane.height() >= 8 { lines.len().min(2) as u16 } else { 0 };

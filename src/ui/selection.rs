@@ -124,7 +124,9 @@ fn strongest(state: &State, pane: &mut Pane<'_>) {
         let y = (1 + place % rows) as u16;
         let (full, _) = footer::bar(mark.alpha / most, 5);
         let index = text::right(&mark.index.to_string(), 4);
-        let alpha = text::right(&format!("{:.2}", mark.alpha), 6);
+        // A class that one eigenvalue tells from all others has a weight of hundreds.
+        let alpha = if mark.alpha < 100.0 { format!("{:.2}", mark.alpha) } else { format!("{:.0}", mark.alpha) };
+        let alpha = text::right(&alpha, 6);
         let x = pane.spans(
             x,
             y,
