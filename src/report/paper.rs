@@ -202,15 +202,15 @@ pub fn collect(host: &mut Host, base: &Settings, watch: &dyn Watch) -> Result<Fo
             found.retrieved = rows;
         }
         if variant.operator == Operator::Fem && variant.normalised {
-            found.examine(host, &variant.name(), watch)?;
+            found.examine(host, &variant.name(), &answer.members, watch)?;
         }
     }
     // What a reader would ask next: features that know how large the shape is for its frequencies.
     host.set(Settings { operator: Operator::Fem, normalisation: Normalisation::Log, remesh: None, ..base.clone() });
-    host.run(&Turn { watch, at: variants.len(), of: turns })?;
-    found.examine(host, "original FEM ln(λ·area)", watch)?;
+    let answer = host.run(&Turn { watch, at: variants.len(), of: turns })?;
+    found.examine(host, "original FEM ln(λ·area)", &answer.members, watch)?;
     if let Ok(Finding::Tuned(tuned)) = host.find(Question::Tuned, watch)? {
-        found.tuned = Some(tuned);
+        found.tuned = Some((tuned, answer.members));
     }
     host.set(base.clone());
     let subject = Subject::new(base, &host.answer());
@@ -230,17 +230,36 @@ pub struct Found {
     pub variation: Result<Variation, String>,
     /// Table 5 and Figure 7, on [`Variant::BEST`].
     pub retrieved: Arc<Vec<Retrieved>>,
-    /// Nested cross-validation, each with the name of its features.
-    pub honest: Vec<(String, Arc<Honest>)>,
-    /// Nearest neighbours tuned inside the fold, on the FEM spectra of the original models.
-    pub tuned: Option<Arc<Tuned>>,
+    /// Nested cross-validation.
+    pub honest: Vec<Examined>,
+    /// Nearest neighbours tuned inside the fold, on the FEM spectra of the original models, and the places of these.
+    pub tuned: Option<(Arc<Tuned>, Arc<Vec<usize>>)>,
+}
+
+/// Nested cross-validation on one kind of features.
+#[derive(Debug, Clone, Serialize)]
+pub struct Examined {
+    /// The features.
+    pub features: String,
+    /// The places of the models that take part: methods are compared in pairs on the same models alone.
+    #[serde(skip)]
+    pub models: Arc<Vec<usize>>,
+    /// What was found.
+    #[serde(flatten)]
+    pub honest: Arc<Honest>,
 }
 
 impl Found {
     /// Examines what the host has just studied.
-    fn examine(&mut self, host: &mut Host, name: &str, watch: &dyn Watch) -> Result<(), Cancelled> {
+    fn examine(
+        &mut self,
+        host: &mut Host,
+        features: &str,
+        models: &Arc<Vec<usize>>,
+        watch: &dyn Watch,
+    ) -> Result<(), Cancelled> {
         if let Ok(Finding::Honest(honest)) = host.find(Question::Honest, watch)? {
-            self.honest.push((name.to_owned(), honest));
+            self.honest.push(Examined { features: features.to_owned(), models: Arc::clone(models), honest });
         }
         Ok(())
     }
@@ -339,7 +358,8 @@ impl Paper {
         sections.extend(figures::sections(&head, &found.rows));
         sections.extend(retrieved::sections(&found.retrieved));
         sections.extend(honest::sections(&found.honest));
-        sections.extend(found.tuned.as_deref().into_iter().flat_map(|tuned| tuned::sections(tuned, &found.honest)));
+        let tuned = found.tuned.as_ref().map(|(tuned, models)| (&**tuned, &models[..]));
+        sections.extend(tuned.into_iter().flat_map(|tuned| tuned::sections(tuned, &found.honest)));
         Self { head, found, sections }
     }
 }

@@ -1,9 +1,7 @@
 //! What the paper could not see: how much of each figure is selection bias.
 
-use std::sync::Arc;
-
 use super::{
-    Section,
+    Examined, Section,
     tables::{maybe, number},
 };
 use crate::{
@@ -11,8 +9,8 @@ use crate::{
     study::{Cell, Honest, HonestRow, Interval, Table},
 };
 
-pub(super) fn sections(honest: &[(String, Arc<Honest>)]) -> Vec<Section> {
-    let Some((_, first)) = honest.first() else { return Vec::new() };
+pub(super) fn sections(honest: &[Examined]) -> Vec<Section> {
+    let Some(Examined { honest: first, .. }) = honest.first() else { return Vec::new() };
     let plan = first.plan;
     let words = vec![
         format!(
@@ -24,7 +22,10 @@ pub(super) fn sections(honest: &[(String, Arc<Honest>)]) -> Vec<Section> {
         ),
         best(honest),
     ];
-    let rows = honest.iter().flat_map(|(name, honest)| honest.rows.iter().map(move |row| cells(name, row))).collect();
+    let rows = honest
+        .iter()
+        .flat_map(|Examined { features, honest, .. }| honest.rows.iter().map(move |row| cells(features, row)));
+    let rows = rows.collect();
     let columns = [
         "features",
         "method",
@@ -51,8 +52,9 @@ pub(super) fn sections(honest: &[(String, Arc<Honest>)]) -> Vec<Section> {
     ]
 }
 
-fn best(honest: &[(String, Arc<Honest>)]) -> String {
-    let rows = honest.iter().flat_map(|(name, honest)| honest.rows.iter().map(move |row| (name, row)));
+fn best(honest: &[Examined]) -> String {
+    let rows =
+        honest.iter().flat_map(|Examined { features, honest, .. }| honest.rows.iter().map(move |row| (features, row)));
     let least = rows.min_by(|(_, a), (_, b)| a.error.mean.total_cmp(&b.error.mean));
     least.map_or_else(String::new, |(name, row)| {
         let Interval { mean, low, high } = row.error;
@@ -77,12 +79,12 @@ fn cells(name: &str, row: &HonestRow) -> Vec<Cell> {
 }
 
 /// The figure on D, where it was selected, beside the honest one with its interval.
-fn figure(honest: &[(String, Arc<Honest>)]) -> Figure {
+fn figure(honest: &[Examined]) -> Figure {
     // One axis for all, as long as the figures need: differences of hundredths are to be seen.
-    let rows = honest.iter().flat_map(|(_, honest)| &honest.rows);
+    let rows = honest.iter().flat_map(|examined| &examined.honest.rows);
     let most = rows.flat_map(|row| [row.apparent, row.error.high]).fold(0.0, f64::max);
     let top = ((most * 5.0).ceil() / 5.0).clamp(0.2, 1.0);
-    let panel = |(name, honest): &(String, Arc<Honest>)| {
+    let panel = |Examined { features: name, honest, .. }: &Examined| {
         let at = |offset: f64| (0..honest.rows.len()).map(move |at| at as f64 + offset).collect::<Vec<_>>();
         let bars = at(0.12).into_iter().zip(&honest.rows);
         let bars = bars.map(|(x, row)| [x, row.error.low, row.error.mean, row.error.high]).collect();
@@ -105,9 +107,9 @@ fn figure(honest: &[(String, Arc<Honest>)]) -> Figure {
 }
 
 /// Every two methods on the same features: a table of differences with a row and a column for each.
-fn pairs(honest: &[(String, Arc<Honest>)]) -> Section {
+fn pairs(honest: &[Examined]) -> Section {
     let names = |honest: &Honest| honest.rows.iter().map(|row| row.method.name()).collect::<Vec<_>>();
-    let heads = honest.first().map(|(_, honest)| names(honest)).unwrap_or_default();
+    let heads = honest.first().map(|examined| names(&examined.honest)).unwrap_or_default();
     let row = |name: &str, honest: &Honest, at: usize| {
         let cell = |other: usize| {
             let pair = honest.pairs.iter().find(|pair| (pair.first, pair.second) == (at, other))?;
@@ -118,9 +120,9 @@ fn pairs(honest: &[(String, Arc<Honest>)]) -> Section {
         let cells = (1..honest.rows.len()).map(|other| cell(other).unwrap_or(Cell::Missing));
         [Cell::Text(name.to_owned()), method].into_iter().chain(cells).collect::<Vec<_>>()
     };
-    let rows = honest
-        .iter()
-        .flat_map(|(name, honest)| (0..honest.rows.len().saturating_sub(1)).map(move |at| row(name, honest, at)));
+    let rows = honest.iter().flat_map(|Examined { features, honest, .. }| {
+        (0..honest.rows.len().saturating_sub(1)).map(move |at| row(features, honest, at))
+    });
     let columns = ["features", "method"].map(str::to_owned).into_iter();
     let columns = columns.chain(heads.iter().skip(1).map(|name| format!("less {name}")));
     let title = "Every two methods on the same models".to_owned();

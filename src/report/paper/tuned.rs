@@ -1,9 +1,7 @@
 //! Which features, which weights, which distance, which k: chosen where it can be chosen honestly, inside the fold.
 
-use std::sync::Arc;
-
 use super::{
-    Section,
+    Examined, Section,
     tables::{maybe, number},
 };
 use crate::{
@@ -11,7 +9,7 @@ use crate::{
     metrics::{Distance, Scale},
     report::figures as drawn,
     spectrum::Normalisation,
-    study::{Cell, Honest, Interval, Table, Tuned, TunedRow, paired},
+    study::{Cell, HonestRow, Interval, Table, Tuned, TunedRow, paired},
 };
 
 /// The numbers of first eigenvalues that the table has.
@@ -22,8 +20,11 @@ const NAME: &str = "nearest neighbour, tuned inside the fold";
 /// Its features: those that are tried.
 const FEATURES: &str = "original FEM";
 
-pub(super) fn sections(tuned: &Tuned, honest: &[(String, Arc<Honest>)]) -> Vec<Section> {
-    vec![table(tuned), against(tuned, honest)]
+/// What was tuned, and the places of its models.
+type Known<'a> = (&'a Tuned, &'a [usize]);
+
+pub(super) fn sections(tuned: Known<'_>, honest: &[Examined]) -> Vec<Section> {
+    vec![table(tuned.0), against(tuned, honest)]
 }
 
 fn normalisation(normalisation: Normalisation) -> &'static str {
@@ -135,23 +136,37 @@ fn figure(tuned: &Tuned) -> crate::figure::Figure {
     drawn::alone(drawn::against_k("", "ε on models not seen", true, layers.collect()))
 }
 
-/// A method on some features: its name, and how often each model was given a wrong class.
+/// A method on some features: its name, its models, and how often each was given a wrong class.
 struct Contestant<'a> {
     features: &'a str,
     method: String,
+    models: &'a [usize],
     wrong: &'a [u32],
 }
 
-fn contestants<'a>(honest: &'a [(String, Arc<Honest>)], tuned: Option<&'a Tuned>) -> Vec<Contestant<'a>> {
-    let of = |(features, honest): &'a (String, Arc<Honest>)| {
-        honest.rows.iter().map(move |row| Contestant { features, method: row.method.name(), wrong: &row.wrong })
+impl Contestant<'_> {
+    /// Whether both were asked for the same models: where a spectrum had to do without one, they were not.
+    fn meets(&self, other: &Self) -> bool {
+        self.models == other.models && self.wrong.len() == other.wrong.len()
+    }
+}
+
+fn contestants<'a>(honest: &'a [Examined], tuned: Option<Known<'a>>) -> Vec<Contestant<'a>> {
+    let of = |Examined { features, models, honest }: &'a Examined| {
+        let row =
+            move |row: &'a HonestRow| Contestant { features, method: row.method.name(), models, wrong: &row.wrong };
+        honest.rows.iter().map(row)
     };
-    let tuned = tuned.map(|tuned| Contestant { features: FEATURES, method: NAME.to_owned(), wrong: &tuned.wrong });
-    honest.iter().flat_map(of).chain(tuned).collect()
+    honest.iter().flat_map(of).chain(tuned.map(contestant)).collect()
+}
+
+fn contestant((tuned, models): Known<'_>) -> Contestant<'_> {
+    Contestant { features: FEATURES, method: NAME.to_owned(), models, wrong: &tuned.wrong }
 }
 
 /// The tuned method against every other.
-fn against(tuned: &Tuned, honest: &[(String, Arc<Honest>)]) -> Section {
+fn against(known: Known<'_>, honest: &[Examined]) -> Section {
+    let (tuned, mine) = (known.0, contestant(known));
     let row = |other: Contestant<'_>| {
         let (Interval { mean, low, high }, p) = paired(&tuned.wrong, other.wrong, tuned.plan);
         let mut cells = vec![Cell::Text(other.features.to_owned()), Cell::Text(other.method)];
@@ -159,8 +174,7 @@ fn against(tuned: &Tuned, honest: &[(String, Arc<Honest>)]) -> Section {
         cells.push(number(p, 4));
         cells
     };
-    // Where a spectrum had to do without a model, rows are of other models.
-    let others = contestants(honest, None).into_iter().filter(|other| other.wrong.len() == tuned.wrong.len());
+    let others = contestants(honest, None).into_iter().filter(|other| other.meets(&mine));
     let columns = ["features", "method", "difference", "from", "to", "permutation p"].map(String::from).to_vec();
     let heading = "Tuned nearest neighbours against every other method".to_owned();
     let words = vec![
@@ -173,19 +187,19 @@ fn against(tuned: &Tuned, honest: &[(String, Arc<Honest>)]) -> Section {
 }
 
 /// Any two methods, across features too, for those who want another pair than the document has.
-pub(super) fn pairs(honest: &[(String, Arc<Honest>)], tuned: Option<&Tuned>) -> Table {
+pub(super) fn pairs(honest: &[Examined], tuned: Option<Known<'_>>) -> Table {
     let all = contestants(honest, tuned);
-    let plan = honest.first().map(|(_, honest)| honest.plan).unwrap_or_default();
+    let plan = honest.first().map(|examined| examined.honest.plan).unwrap_or_default();
     let mcnemar = |first: &Contestant<'_>, second: &Contestant<'_>| {
-        let (_, honest) =
-            honest.iter().find(|(features, _)| features == first.features && features == second.features)?;
+        let on_both = |features: &str| features == first.features && features == second.features;
+        let honest = &honest.iter().find(|examined| on_both(&examined.features))?.honest;
         let at = |method: &str| honest.rows.iter().position(|row| row.method.name() == method);
         let (first, second) = (at(&first.method)?, at(&second.method)?);
         honest.pairs.iter().find(|pair| (pair.first, pair.second) == (first, second))?.mcnemar
     };
     let mut rows = Vec::new();
     for (at, first) in all.iter().enumerate() {
-        for second in all[at + 1..].iter().filter(|second| second.wrong.len() == first.wrong.len()) {
+        for second in all[at + 1..].iter().filter(|second| second.meets(first)) {
             let (Interval { mean, low, high }, p) = paired(first.wrong, second.wrong, plan);
             let mut cells: Vec<Cell> = [first, second]
                 .into_iter()
@@ -208,4 +222,42 @@ pub(super) fn pairs(honest: &[(String, Arc<Honest>)], tuned: Option<&Tuned>) -> 
         "McNemar p on Q",
     ];
     Table { number: 0, title: "Any two methods".to_owned(), columns: columns.map(String::from).to_vec(), rows }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::study::{Honest, Learner, Plan};
+
+    #[test]
+    fn methods_meet_on_the_same_models_alone() {
+        let row = |method| HonestRow {
+            method,
+            apparent: 0.0,
+            query: None,
+            error: Interval::default(),
+            adr: None,
+            repeats: Vec::new(),
+            wrong: vec![0, 1, 2],
+            selected: 1.0,
+        };
+        let examined = |features: &str, models: [usize; 3]| Examined {
+            features: features.to_owned(),
+            models: Arc::new(models.to_vec()),
+            honest: Arc::new(Honest {
+                plan: Plan::default(),
+                rows: vec![row(Learner::HILL), row(Learner::ALL)],
+                pairs: vec![],
+            }),
+        };
+        let honest = [examined("a", [0, 1, 2]), examined("b", [0, 1, 3]), examined("c", [0, 1, 2])];
+        let names = |row: &[Cell]| match (&row[0], &row[2]) {
+            (Cell::Text(first), Cell::Text(second)) => format!("{first}{second}"),
+            other => panic!("{other:?}"),
+        };
+        let met: Vec<String> = pairs(&honest, None).rows.iter().map(|row| names(row)).collect();
+        assert_eq!(met, ["aa", "ac", "ac", "ac", "ac", "bb", "cc"]);
+    }
 }

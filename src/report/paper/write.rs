@@ -8,11 +8,11 @@ use std::{
 
 use serde::Serialize;
 
-use super::{Found, Head, Paper, Rows, Section, Variation, tuned};
+use super::{Examined, Found, Head, Paper, Rows, Section, Variation, tuned};
 use crate::{
     figure::{FigureError, PRINT},
     report::{csv, json, markdown},
-    study::{Honest, Retrieved, Table, Tuned},
+    study::{Retrieved, Table, Tuned},
 };
 
 /// Why a document was not written.
@@ -56,16 +56,8 @@ struct Whole<'a> {
     spectra: &'a [Rows],
     variation: Option<&'a Variation>,
     retrieved: &'a [Retrieved],
-    honest: Vec<Examined<'a>>,
+    honest: &'a [Examined],
     tuned: Option<&'a Tuned>,
-}
-
-/// Nested cross-validation on one kind of features.
-#[derive(Serialize)]
-struct Examined<'a> {
-    features: &'a str,
-    #[serde(flatten)]
-    honest: &'a Honest,
 }
 
 impl Paper {
@@ -87,9 +79,9 @@ impl Paper {
         }
         let tables = self.sections.iter().filter_map(|section| Some(section.table.as_ref()?.1.clone())).collect();
         let Found { rows, variation, retrieved, honest, tuned } = &self.found;
-        files.push(("pairs.csv".to_owned(), csv::table(&tuned::pairs(honest, tuned.as_deref()))?));
-        let honest = honest.iter().map(|(features, honest)| Examined { features, honest }).collect();
-        let (variation, tuned) = (variation.as_ref().ok(), tuned.as_deref());
+        let tuned = tuned.as_ref().map(|(tuned, models)| (&**tuned, &models[..]));
+        files.push(("pairs.csv".to_owned(), csv::table(&tuned::pairs(honest, tuned))?));
+        let (variation, tuned) = (variation.as_ref().ok(), tuned.map(|(tuned, _)| tuned));
         let whole = Whole { head: &self.head, tables, spectra: rows, variation, retrieved, honest, tuned };
         let mut bytes = Vec::new();
         json::lines(&whole, &mut bytes)?;
