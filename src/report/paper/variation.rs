@@ -73,24 +73,25 @@ impl Spectra {
 
 /// The part of the document, or why there is no figure in it.
 pub(super) fn section(variation: Result<&Variation, &String>) -> Section {
-    let heading = format!("Figure 1: Variation of the first {EIGENVALUES} eigenvalues");
+    let heading = |count: usize| format!("Figure 1: Variation of the first {count} eigenvalues");
     let variation = match variation {
         Ok(variation) => variation,
         Err(reason) => {
             let words = vec![format!("There is none: {}.", markdown::escape(reason))];
-            return Section { heading, words, table: None, figure: None };
+            return Section { heading: heading(EIGENVALUES), words, table: None, figure: None };
         }
     };
+    let count = variation.count();
     let (model, class) = (markdown::escape(&variation.model), markdown::escape(&variation.class));
     let mut words = vec![format!(
-        "(a, b) The first {EIGENVALUES} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
+        "(a, b) The first {count} eigenvalues of {model} and of variants made of it: FEM divided by the last of \
          them, cot as they are. (c, d) The same as a change against the original. (e, f) {model} among the training \
          models of its class, {class}. The table has the mean over k of |λ − λ'|/λ' against the original λ', with the \
          zeros left out."
     )];
     words.extend(variation.seen());
     Section {
-        heading,
+        heading: heading(count),
         words,
         table: Some(("figure-1-variation".to_owned(), variation.table())),
         figure: Some(("figure-1".to_owned(), variation.figure())),
@@ -124,6 +125,12 @@ const LOOKS: [Style; 9] = [
 ];
 
 impl Variation {
+    /// How many eigenvalues are shown: [`EIGENVALUES`], or all of a shape that has fewer.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.variants.first().and_then(|original| original.under(Operator::Fem)).map_or(EIGENVALUES, <[f64]>::len)
+    }
+
     /// The eigenvalues of one of the shapes under an operator, each with its index.
     #[must_use]
     pub fn curve(spectra: &Spectra, operator: Operator) -> Option<Vec<[f64; 2]>> {
@@ -163,7 +170,7 @@ impl Variation {
         };
         let panel = |title: String, operator: Operator, layers: Vec<Layer>| Panel {
             title,
-            x: Axis::linear("index k").within(0.0, EIGENVALUES as f64),
+            x: Axis::linear("index k").within(0.0, self.count() as f64),
             y: Axis::linear(figures::unit(normalisation(operator))),
             layers,
         };
@@ -242,9 +249,27 @@ impl Variation {
         }
         Table {
             number: 0,
-            title: format!("Mean relative difference of the first {EIGENVALUES} eigenvalues"),
+            title: format!("Mean relative difference of the first {} eigenvalues", self.count()),
             columns: columns.into_iter().map(String::from).collect(),
             rows: self.variants.iter().zip(self.differences()).map(row).collect(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_shape_has_as_many_as_it_has() {
+        let mut original = Spectra::of("original", 42);
+        let values: Vec<f64> = (0..42).map(f64::from).collect();
+        original.put(Operator::Fem, &values);
+        original.put(Operator::Cot, &values);
+        let variation = Variation { variants: vec![original], ..Variation::default() };
+        let section = section(Ok(&variation));
+        assert_eq!(section.heading, "Figure 1: Variation of the first 42 eigenvalues");
+        assert!(section.words[0].contains("first 42 eigenvalues") && variation.table().title.contains("first 42"));
+        assert_eq!(Variation::default().count(), EIGENVALUES);
     }
 }

@@ -65,7 +65,12 @@ fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
     let model = state.answer.models.iter().find(|model| model.name == variation.model);
     let model = text::clean(model.map_or(&variation.model, |model| names.of(model)));
     let class = text::clean(&variation.class);
-    heading(pane, 0, &format!("Figure 1: the first {EIGENVALUES} eigenvalues of {model} {class}"), Note::Settled);
+    heading(
+        pane,
+        0,
+        &format!("Figure 1: the first {} eigenvalues of {model} {class}", variation.count()),
+        Note::Settled,
+    );
     let mut rest = pane.area();
     pane::cut_top(&mut rest, 1);
     let across = (rest.width / WIDE).max(1);
@@ -80,7 +85,7 @@ fn charts(state: &State, variation: &Variation, pane: &mut Pane<'_>) {
         for (place, panel) in line.iter().enumerate() {
             let width = strip.width / (line.len() - place) as u16;
             let area = pane::cut_left(&mut strip, width);
-            panel.draw(&mut pane.part(area));
+            panel.draw(variation.count(), &mut pane.part(area));
         }
     }
     changes(variation, across, &mut pane.part(list));
@@ -159,7 +164,7 @@ fn panels(variation: &Variation, across: u16, height: u16) -> Vec<Panel> {
 }
 
 impl Panel {
-    fn draw(&self, pane: &mut Pane<'_>) {
+    fn draw(&self, count: usize, pane: &mut Pane<'_>) {
         pane.put(1, 0, &text::fit(self.title, (pane.width() as usize).saturating_sub(2)), Role::Plain);
         let curve = |(place, points): &(usize, Vec<[f64; 2]>)| Lettered {
             letter: self.lettered.then(|| letter(*place)),
@@ -171,7 +176,7 @@ impl Panel {
         let y = Axis::around(values.chain([0.0]));
         let mut rest = pane.area();
         pane::cut_top(&mut rest, 1);
-        let plot = lettered::plot(self.curves.iter().map(curve).collect(), Axis::indices(EIGENVALUES, false), y);
+        let plot = lettered::plot(self.curves.iter().map(curve).collect(), Axis::indices(count, false), y);
         plot.draw(&mut pane.part(pane::inset(rest, 1)));
     }
 }
