@@ -1,4 +1,4 @@
-//! The candidates of one addition, evaluated side by side.
+//! The candidates of one addition or removal, evaluated side by side.
 
 use pulp::Simd;
 
@@ -23,7 +23,10 @@ const FEW: usize = 4;
 ///
 /// First all models are asked briefly, which is enough to give up on most candidates; then those whose losses are not
 /// known yet are asked again; and for those candidates that may be best, ties are looked into.
-pub(super) struct Ask<'a, T> {
+///
+/// The candidates are added if `ADDED`; otherwise they are removed, and those left after the first look are evaluated
+/// one by one.
+pub(super) struct Ask<'a, T, const ADDED: bool> {
     pub(super) ground: &'a Ground<'a, T>,
     pub(super) indices: &'a [u32],
     pub(super) bound: &'a Bound,
@@ -31,15 +34,19 @@ pub(super) struct Ask<'a, T> {
     pub(super) watch: &'a dyn Watch,
 }
 
-impl<T: Term> pulp::WithSimd for Ask<'_, T> {
+impl<T: Term, const ADDED: bool> pulp::WithSimd for Ask<'_, T, ADDED> {
     type Output = Result<Vec<Outcome>, Cancelled>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         if !Sketch::<S>::fits(self.ground.judge) {
             let mut outcomes = Vec::with_capacity(self.indices.len());
-            for indices in self.indices.chunks(S::F64_LANES) {
-                self.block(simd, indices, &mut outcomes)?;
+            for indices in self.indices.chunks(if ADDED { S::F64_LANES } else { 1 }) {
+                if ADDED {
+                    self.block(simd, indices, &mut outcomes)?;
+                } else {
+                    outcomes.push(self.alone(indices[0])?);
+                }
             }
             return Ok(outcomes);
         }
@@ -52,12 +59,12 @@ impl<T: Term> pulp::WithSimd for Ask<'_, T> {
             let mut first = true;
             while !left.is_empty() {
                 // For the error the nearest few models are enough: side by side is quicker even for one.
-                let alone = self.ground.judge.cost() == Cost::Adr && (first || left.len() < FEW);
+                let alone = !ADDED || (self.ground.judge.cost() == Cost::Adr && (first || left.len() < FEW));
                 let count = if alone { 1 } else { left.len().min(S::F64_LANES) };
                 let places: Vec<usize> = left.drain(..count).collect();
                 let mut exact = Vec::with_capacity(count);
                 if alone {
-                    exact.push(self.ground.exactly(indices[places[0]], self.bound, self.watch)?);
+                    exact.push(self.alone(indices[places[0]])?);
                 } else {
                     let indices: Vec<u32> = places.iter().map(|&at| indices[at]).collect();
                     self.block(simd, &indices, &mut exact)?;
@@ -84,7 +91,16 @@ impl<T: Term> pulp::WithSimd for Ask<'_, T> {
     }
 }
 
-impl<T: Term> Ask<'_, T> {
+impl<T: Term, const ADDED: bool> Ask<'_, T, ADDED> {
+    /// The outcome of one candidate.
+    fn alone(&self, index: u32) -> Result<Outcome, Cancelled> {
+        if ADDED {
+            self.ground.exactly(index, self.bound, self.watch)
+        } else {
+            self.ground.without(index, self.bound, self.watch)
+        }
+    }
+
     /// The outcomes of those candidates, as many as fit, that a sketch is enough to give up on. When it is not enough
     /// for all, their losses are at least those that come with them.
     #[inline(always)]
@@ -103,7 +119,7 @@ impl<T: Term> Ask<'_, T> {
             }
             for &model in models {
                 let before = losses;
-                sketch.add_losses::<T>(simd, model as usize, &rows[model as usize], judge, &mut losses);
+                sketch.add_losses::<T, ADDED>(simd, model as usize, &rows[model as usize], judge, &mut losses);
                 let mut lost = [0; sketch::LANES];
                 for ((lost, now), before) in lost.iter_mut().zip(losses).zip(before) {
                     *lost = judge.roughly_in_brief(now - before);

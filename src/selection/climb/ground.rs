@@ -89,9 +89,10 @@ impl<'a, T: Term> Ground<'a, T> {
         self.asked.sort_unstable_by_key(|&model| (std::cmp::Reverse(rows[model as usize].loss), model));
     }
 
-    /// The losses with each of some indices added.
-    pub(super) fn with(
+    /// The losses with each of some indices added or, if not `added`, removed.
+    pub(super) fn moved(
         &self,
+        added: bool,
         indices: &[u32],
         bound: &Bound,
         habits: &Habits,
@@ -100,7 +101,14 @@ impl<'a, T: Term> Ground<'a, T> {
         if self.selected.is_empty() {
             return indices.iter().map(|&index| self.alone(index, bound, habits, watch)).collect();
         }
-        pulp::Arch::new().dispatch(Ask { ground: self, indices, bound, habits, watch })
+        let arch = pulp::Arch::new();
+        if added {
+            arch.dispatch(Ask::<T, true> { ground: self, indices, bound, habits, watch })
+        } else if self.selected.len() == 1 {
+            Ok(vec![Outcome::Whole(self.judge.worst())])
+        } else {
+            arch.dispatch(Ask::<T, false> { ground: self, indices, bound, habits, watch })
+        }
     }
 
     /// The loss with `index` alone.
@@ -139,17 +147,13 @@ impl<'a, T: Term> Ground<'a, T> {
     }
 
     /// The loss with `index` removed.
-    pub(super) fn without(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Vec<Outcome>, Cancelled> {
-        if self.selected.len() == 1 {
-            return Ok(vec![Outcome::Whole(self.judge.worst())]);
-        }
+    pub(super) fn without(&self, index: u32, bound: &Bound, watch: &dyn Watch) -> Result<Outcome, Cancelled> {
         let rest: Vec<u32> = self.selected.iter().copied().filter(|&other| other != index).collect();
         let mut nearest = Nearest::new(self.rows.len(), self.columns.stride());
-        let outcome = self.one_by_one(index, bound, watch, |model| {
+        self.one_by_one(index, bound, watch, |model| {
             nearest.begin(Some(model));
             self.loss_of(model, &rest, &mut nearest)
-        })?;
-        Ok(vec![outcome])
+        })
     }
 
     /// The loss with `index` added.

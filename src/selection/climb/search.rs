@@ -78,11 +78,7 @@ impl Party<'_> {
         let (ground, habits, watch) = (&place.ground, &self.habits, self.watch);
         let mut candidates = if added { ground.outside() } else { ground.selected().to_vec() };
         candidates.retain(|&index| allowed(index));
-        if added {
-            self.race.run(&candidates, loss, keep, LANES, |block, bound| ground.with(block, bound, habits, watch))
-        } else {
-            self.race.run(&candidates, loss, keep, 1, |block, bound| ground.without(block[0], bound, watch))
-        }
+        self.race.run(&candidates, loss, keep, LANES, |block, bound| ground.moved(added, block, bound, habits, watch))
     }
 
     /// Forward while the cost falls, backward while it falls, and again, until neither falls from where it stands.

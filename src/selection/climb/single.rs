@@ -10,6 +10,8 @@ const MOST_OFF: f64 = f64::from_bits((1023 + 60) << 52);
 const FARTHEST: f64 = f64::from_bits((1023 + 100) << 52);
 /// What is left of a distance that is shortened by more than twice what it may be off relatively.
 pub(super) const SHORTENED: f32 = (1.0 - 4.0 * RELATIVELY) as f32;
+/// The same of one that is lengthened.
+pub(super) const LENGTHENED: f32 = (1.0 + 4.0 * RELATIVELY) as f32;
 
 /// All features, as [`Term::singles`] has them.
 pub(super) struct Singles {

@@ -3,6 +3,8 @@
 //! Distances are computed in single precision. A stranger is counted before a relative only when it is nearer by more
 //! than both may be [off](Singles::margin), so that the losses are those of [`LEAST`](super::block::LEAST) or a little
 //! less: never more than the true ones. That is enough to give up on nearly all candidates.
+//!
+//! A removal takes a term from a sum instead of adding one. What is left may be off relatively to all of the sum.
 
 use std::hint::black_box;
 
@@ -12,7 +14,7 @@ use super::{
     Cost,
     judge::Judge,
     row::Row,
-    single::{SHORTENED, Singles},
+    single::{LENGTHENED, SHORTENED, Singles},
 };
 use crate::metrics::{Term, add_where_u32s};
 
@@ -21,7 +23,7 @@ pub(super) const LANES: usize = 16;
 /// Entries of a table of [`Judge::rough_credits`]: more than there can be relatives and strangers before one.
 pub(super) const RANKS: usize = 256;
 /// Strangers counted in one go.
-const CHUNK: usize = 8;
+const CHUNK: usize = 12;
 
 /// A loss for each lane, in [`Judge::rough_unit`]s.
 pub(super) type Losses = [u64; LANES];
@@ -61,7 +63,7 @@ impl<S: Simd> Sketch<S> {
 
     /// Adds what one model asked loses at least under each of the candidates.
     #[inline(always)]
-    pub(super) fn add_losses<T: Term>(
+    pub(super) fn add_losses<T: Term, const ADDED: bool>(
         &mut self,
         simd: S,
         asked: usize,
@@ -80,8 +82,14 @@ impl<S: Simd> Sketch<S> {
         }
         let (own, shortened) = (self.values[asked], simd.splat_f32s(SHORTENED));
         for (relative, &kin) in self.relatives.iter_mut().zip(&row.kin) {
-            let sums = sums::<S, T>(simd, own, &self.values, kin);
-            *relative = simd.sub_f32s(simd.mul_f32s(sums, shortened), self.margins);
+            let sum = simd.splat_f32s(kin.0);
+            let term = T::single_terms(simd, own, self.values[kin.1 as usize]);
+            let sums = if ADDED {
+                simd.mul_f32s(simd.add_f32s(sum, term), shortened)
+            } else {
+                simd.sub_f32s(simd.mul_f32s(sum, shortened), term)
+            };
+            *relative = simd.sub_f32s(sums, self.margins);
         }
         if judge.cost() == Cost::Error {
             // The nearest alone matters.
@@ -97,7 +105,7 @@ impl<S: Simd> Sketch<S> {
                 self.relatives[b] = simd.max_f32s(low, high);
             }
         }
-        let live = self.count::<T>(simd, own, row, count);
+        let live = self.count::<T, ADDED>(simd, own, row, count);
         let ((credits, whole), filled) = (judge.rough_credits(asked), judge.class(asked).len());
         let mut gained = simd.splat_u32s(0);
         for (nth, &before) in (0..).zip(&self.before[..live]) {
@@ -114,7 +122,7 @@ impl<S: Simd> Sketch<S> {
     /// Counts, for each of `count` relatives, the strangers before it. Returns how many of the nearest relatives are
     /// among the first Q of any lane.
     #[inline(always)]
-    fn count<T: Term>(&mut self, simd: S, own: S::f32s, row: &Row, count: usize) -> usize {
+    fn count<T: Term, const ADDED: bool>(&mut self, simd: S, own: S::f32s, row: &Row, count: usize) -> usize {
         let Self { values, relatives, before, .. } = self;
         let (relatives, before) = (&relatives[..count], &mut before[..count]);
         before.fill(simd.splat_u32s(0));
@@ -126,7 +134,8 @@ impl<S: Simd> Sketch<S> {
             while live > 0 && none::<S>(simd, matter(simd, before[live - 1], count - live + 1)) {
                 live -= 1;
             }
-            let near = simd.splat_f32s(chunk[0].0);
+            // A removal may bring strangers as near as can be.
+            let near = simd.splat_f32s(if ADDED { chunk[0].0 } else { f32::NEG_INFINITY });
             while first < live && none::<S>(simd, simd.greater_than_or_equal_f32s(relatives[first], near)) {
                 first += 1;
             }
@@ -135,7 +144,12 @@ impl<S: Simd> Sketch<S> {
             }
             let mut strangers = [simd.splat_f32s(f32::INFINITY); CHUNK];
             for (stranger, &of) in strangers.iter_mut().zip(chunk) {
-                *stranger = sums::<S, T>(simd, own, values, of);
+                let term = T::single_terms(simd, own, values[of.1 as usize]);
+                *stranger = if ADDED {
+                    simd.add_f32s(simd.splat_f32s(of.0), term)
+                } else {
+                    simd.sub_f32s(simd.splat_f32s(of.0 * LENGTHENED), term)
+                };
             }
             for (before, &relative) in before[first..live].iter_mut().zip(&relatives[first..live]) {
                 let mut count = *before;
@@ -147,12 +161,6 @@ impl<S: Simd> Sketch<S> {
         }
         live
     }
-}
-
-/// The distances, under the candidates, of a model that is `sum` away without them to one with the features `own`.
-#[inline(always)]
-fn sums<S: Simd, T: Term>(simd: S, own: S::f32s, values: &[S::f32s], (sum, model): (f32, u32)) -> S::f32s {
-    simd.add_f32s(simd.splat_f32s(sum), T::single_terms(simd, own, values[model as usize]))
 }
 
 /// The lanes in which a relative is still among the first Q, when those and itself that come no nearer are `rest`.
