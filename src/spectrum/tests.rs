@@ -414,6 +414,8 @@ fn a_stretch_of_the_spectrum_needs_nothing_below_it() {
         }
         let range = between(&mesh, choice, values[100]..=values[120] * (1.0 + 1e-9), &Unwatched).unwrap();
         assert!((range.below == 100 || range.below == 101) && range.below + range.values.len() == 121);
+        let last = near(&mesh, choice, 1e300, 3, &Unwatched).unwrap();
+        assert_eq!((last.below + 3, last.values.len()), (last.order, 3));
         let start = near(&mesh, choice, 0.0, 5, &Unwatched).unwrap();
         assert_eq!((start.below, start.values[0]), (0, 0.0));
         let everything = near(&potato(1), choice, 1.0, 999, &Unwatched).unwrap();

@@ -95,6 +95,24 @@ impl<'a> Pieces<'a> {
         Ok(count)
     }
 
+    /// A target that is not far above all eigenvalues, with the same ones nearest to it.
+    fn within(&mut self, target: f64) -> Result<f64, SpectrumError> {
+        let order = self.laplacian.matrix.order();
+        let (mut some, mut all) = (4.0 * std::f64::consts::PI / self.laplacian.measure(), target);
+        if self.below(all)? < order {
+            return Ok(target);
+        }
+        while all > 2.0 * some {
+            let mid = some.sqrt() * all.sqrt();
+            if self.below(mid)? == order {
+                all = mid;
+            } else {
+                some = mid;
+            }
+        }
+        Ok(all)
+    }
+
     /// All eigenvalues in a range, ends included.
     fn between(&mut self, range: &Range<f64>) -> Result<Window, SpectrumError> {
         let mut found: Vec<(f64, f64)> = Vec::new();
@@ -161,6 +179,7 @@ pub(super) fn near(
     let order = laplacian.matrix.order();
     let count = count.min(order);
     let mut pieces = Pieces::new(laplacian, watch)?;
+    let target = pieces.within(target)?;
     // By Weyl's law λ grows by 4π over the area from one eigenvalue to the next.
     let mut half = 4.0 * std::f64::consts::PI / laplacian.measure() * (0.5 * count as f64 + 2.0);
     loop {
