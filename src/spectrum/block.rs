@@ -147,33 +147,6 @@ impl Kernel for Combine<'_> {
     }
 }
 
-/// `w −= past M`; returns `newestᵀ w`.
-pub(super) struct Recur<'a> {
-    pub past: &'a [Row],
-    pub factor: &'a Square,
-    pub newest: &'a [Row],
-    pub w: &'a mut [Row],
-}
-
-impl Kernel for Recur<'_> {
-    type Output = Square;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> Square {
-        let Self { past, factor, newest, w } = self;
-        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
-        let mut sums = [lanes.zero(); WIDTH];
-        for ((w, past), newest) in w.iter_mut().zip(past).zip(newest) {
-            let sum = less(lanes, lanes.load(w), past, &factor);
-            *w = lanes.row(sum);
-            for (sums, &value) in sums.iter_mut().zip(newest) {
-                *sums = lanes.add_mul(*sums, lanes.splat(value), sum);
-            }
-        }
-        sums.map(|sum| lanes.row(sum))
-    }
-}
-
 /// `r −= (L − σB) x`
 pub(super) struct Residual<'a> {
     pub matrix: &'a Symmetric,

@@ -102,7 +102,11 @@ fn run(laplacian: &Laplacian, expected: &Spectrum, fault: Fault) -> (bool, bool)
     let tamper = &tools.scratch.tamper;
     let check = |at: usize, value: f64, error: f64| {
         let off = (value - values[at]).abs();
-        assert!(off <= error + errors[at], "{at}: {value} is off by {off:e}, {tamper:?}");
+        assert!(
+            off <= error + errors[at],
+            "{at}: {value} is off by {off:e}, not {error:e} or {:e}, {tamper:?}",
+            errors[at]
+        );
     };
     match result {
         Ok(spectrum) => {

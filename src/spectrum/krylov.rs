@@ -6,14 +6,14 @@
 
 pub(super) use self::random::Random;
 use self::{
-    orthogonal::FIRST,
+    orthogonal::{FIRST, Losses, symmetric},
     projected::{cholesky, product, projected},
 };
 use super::{
-    block::{Combine, Dots, Multiply, Recur, Residual, Square, Update},
+    block::{Combine, Dots, Multiply, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Normalise, Panel, panels},
+    panel::{Normalise, Panel, Recur, panels},
     pencil::Pencil,
     poll::{Poll, Stop},
     small::{eigen, identity},
@@ -30,7 +30,7 @@ const WARMING: usize = 3;
 
 /// How much of each column must be independent of the columns before it in a block that stays (by Cholesky's
 /// decomposition Q is orthonormal to rounding over that), and in one that is only to be multiplied again.
-const STRICTLY: f64 = 1e-3;
+const STRICTLY: f64 = 2e-2;
 const ROUGHLY: f64 = 1e-9;
 
 /// Decompositions of a block after which it is taken as it is.
@@ -44,7 +44,7 @@ pub(super) struct Scratch {
     images: Vec<Vec<Panel>>,
     /// The basis in double precision.
     exact: Vec<Buffer>,
-    /// The newest block of the basis and the one before it.
+    /// The newest block of the basis and the one before it, in double precision.
     now: Buffer,
     past: Buffer,
     /// A⁻¹B V, then the next block before it is normalised.
@@ -103,14 +103,10 @@ pub(super) struct Krylov<'a> {
     alpha: Vec<Square>,
     /// Blocks below the diagonal: `beta[j]` couples block j to block j + 1.
     beta: Vec<Square>,
-    /// For each step what orthogonalisation took out of the product: its components along the first blocks or all.
+    /// How far the basis is from orthogonal, if it is in single precision.
+    losses: Losses,
+    /// For each step what orthogonalisation took out of the product, if the basis is in double precision.
     lost: Vec<Vec<Square>>,
-    /// Whether the next step is made orthogonal to all blocks.
-    due: bool,
-    /// The largest norm of what the last step took out of a vector along all but the first blocks.
-    taken: f64,
-    /// By how much the projected operator is off: see [`leak`](Self::leak).
-    off: f64,
     /// For each vector of the first block by how much the solve was wrong: see [`accuracy`](Self::accuracy).
     wrong: [f64; WIDTH],
     /// Whether the products with S were those with a symmetric operator, as they are unless something is wrong.
@@ -147,10 +143,8 @@ impl<'a> Krylov<'a> {
             basis,
             alpha: Vec::new(),
             beta: Vec::new(),
+            losses: Losses::default(),
             lost: Vec::new(),
-            due: true,
-            taken: 0.0,
-            off: 0.0,
             wrong: [0.0; WIDTH],
             symmetric: true,
             random,
@@ -183,15 +177,10 @@ impl<'a> Krylov<'a> {
             self.measure();
             poll.charge(Cost::Solves);
         }
-        let alpha = self.recur();
-        poll.charge(Cost::Orthogonalisation);
-        let mut lost = self.orthogonalise(self.against(), Some(&alpha), poll)?;
+        let (along, seen) = self.recur();
+        let lost = self.orthogonalise(&along, seen, poll)?;
         let mut beta = self.normalise(blocks, poll)?;
-        if self.spoilt(&lost, &beta) {
-            self.again(blocks, &mut lost, &mut beta, poll)?;
-        }
-        self.note(&lost, &beta);
-        self.lost.push(lost);
+        self.note(lost, &mut beta, poll)?;
         self.beta.push(beta);
         self.keep();
         Ok(())
@@ -233,35 +222,32 @@ impl<'a> Krylov<'a> {
         self.wrong.iter().enumerate().fold(0.0, |most, (j, wrong)| (wrong / norm(j)).max(most))
     }
 
-    /// The three-term recurrence: takes out of `work` its large components, those along the last two blocks. Only
-    /// then is one pass of orthogonalisation enough: it multiplies what orthogonality the basis lacks with what it
-    /// removes.
-    ///
-    /// What is along the last one is left for [`orthogonalise`](Self::orthogonalise) to take out, unless the basis is
-    /// in double precision.
-    fn recur(&mut self) -> Square {
-        let Scratch { now, past, work, newest, .. } = &mut *self.scratch;
-        let mut sum = [Square::default()];
+    /// The three-term recurrence: takes what is along the block before the newest out of `work`. Returns its components
+    /// along the newest, which are left for [`orthogonalise`](Self::orthogonalise) to take out, and along the first
+    /// blocks, if that is all it has to look at.
+    fn recur(&mut self) -> (Square, Vec<Square>) {
+        let few = matches!(self.basis, Basis::Single) && self.blocks() > FIRST + 1 && !self.due();
+        let Scratch { past, work, newest, images, room, .. } = &mut *self.scratch;
+        let (mut along, mut seen) = ([Square::default()], Vec::new());
         if let Some(beta) = self.beta.last() {
             let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
             let (past, newest, w) = (past.rows(), newest.rows(), work.rows_mut());
-            sum[0] = dispatch(Recur { past, factor: &factor, newest, w });
+            let images: Vec<&[Panel]> = images.iter().take(if few { FIRST } else { 0 }).map(Vec::as_slice).collect();
+            let sums = &mut seen;
+            along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &images, room, sums });
         } else {
-            dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut sum });
+            dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut along });
         }
-        let [sum] = sum;
-        let alpha: Square = std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (sum[i][j] + sum[j][i])));
+        let [along] = along;
+        let alpha = symmetric(&along);
         let coupled = alpha.iter().chain(self.beta.last().into_iter().flatten()).flatten();
         let largest = coupled.fold(0.0_f64, |most, entry| most.max(entry.abs()));
-        let skew = (0..WIDTH).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let skew = skew.fold(0.0_f64, |most, (i, j)| most.max((sum[i][j] - sum[j][i]).abs()));
+        let skew = along.as_flattened().iter().zip(alpha.as_flattened());
+        let skew = skew.fold(0.0_f64, |most, (along, alpha)| most.max((along - alpha).abs()));
         // False for NaN too.
-        self.symmetric &= skew <= 1e-5 * largest;
-        if matches!(self.basis, Basis::Double(_)) {
-            dispatch(Update { basis: &[now.rows()], factors: &[alpha], w: work.rows_mut() });
-        }
+        self.symmetric &= skew <= 5e-6 * largest;
         self.alpha.push(alpha);
-        alpha
+        (along, seen)
     }
 
     /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix. Q is to be the block `at` of the
@@ -286,8 +272,9 @@ impl<'a> Krylov<'a> {
                 single[1] = &mut images[at];
             }
         }
-        let (x, y, q, b) = (work.rows_mut(), mass.rows(), next.rows_mut(), newest.rows_mut());
-        dispatch(Normalise { x, y, factor: &inverse, q, b, single });
+        let (x, y, q) = (work.rows_mut(), mass.rows_mut(), next.rows_mut());
+        dispatch(Normalise { x, y, factor: &inverse, q, single });
+        std::mem::swap(mass, newest);
         poll.charge(Cost::Blocks);
         poll.spend(4 * WIDTH * work.rows().len())?;
         Ok(total)
@@ -298,13 +285,15 @@ impl<'a> Krylov<'a> {
     fn decompose(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<(Square, Square), Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
         if blocks == 0 && !self.basis.locked().is_empty() {
-            self.orthogonalise(0, None, poll)?;
+            self.clean(0, poll)?;
         }
         let mut round = 0;
         loop {
-            let Scratch { next, work, mass, .. } = &mut *self.scratch;
-            let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
-            poll.charge(Cost::Products);
+            let gram = self.gram(poll);
+            if blocks > 0 && (round > 0 || self.shrunk(&gram)) {
+                self.next_to();
+            }
+            let Scratch { next, work, .. } = &mut *self.scratch;
             let (upper, inverse, worst, lost) = cholesky(&gram);
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);
@@ -327,9 +316,17 @@ impl<'a> Krylov<'a> {
                 }
             }
             for _ in 0..=usize::from(lost != 0) {
-                self.orthogonalise(blocks, None, poll)?;
+                self.clean(blocks, poll)?;
             }
         }
+    }
+
+    /// `mass = B work`; returns the Gram matrix of `work`.
+    fn gram(&mut self, poll: &mut Poll) -> Square {
+        let Scratch { work, mass, .. } = &mut *self.scratch;
+        let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+        poll.charge(Cost::Products);
+        gram
     }
 
     /// Takes `next` as the next block of the basis.

@@ -33,14 +33,13 @@ fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
     }
 }
 
-/// `q = x M` and `x = b = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to
+/// `q = x M` and `x = y = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to
 /// single precision as well, for the basis, if there is room for them.
 pub(super) struct Normalise<'a> {
     pub x: &'a mut [Row],
-    pub y: &'a [Row],
+    pub y: &'a mut [Row],
     pub factor: &'a Square,
     pub q: &'a mut [Row],
-    pub b: &'a mut [Row],
     pub single: [&'a mut [Panel]; 2],
 }
 
@@ -49,7 +48,7 @@ impl Kernel for Normalise<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { x, y, factor, q, b, single: [first, second] } = self;
+        let Self { x, y, factor, q, single: [first, second] } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
         let combine = |row: &Row| {
             let mut sum = lanes.zero();
@@ -58,16 +57,16 @@ impl Kernel for Normalise<'_> {
             }
             lanes.row(sum)
         };
-        let groups = x.chunks_mut(ROWS).zip(y.chunks(ROWS)).zip(q.chunks_mut(ROWS).zip(b.chunks_mut(ROWS)));
-        for (at, ((x, y), (q, b))) in groups.enumerate() {
+        let groups = x.chunks_mut(ROWS).zip(y.chunks_mut(ROWS)).zip(q.chunks_mut(ROWS));
+        for (at, ((x, y), q)) in groups.enumerate() {
             for (q, x) in q.iter_mut().zip(x.iter()) {
                 *q = combine(x);
             }
-            for ((b, y), x) in b.iter_mut().zip(y).zip(x) {
-                *b = combine(y);
-                *x = *b;
+            for (y, x) in y.iter_mut().zip(x) {
+                *y = combine(y);
+                *x = *y;
             }
-            for (to, rows) in [(first.get_mut(at), q), (second.get_mut(at), b)] {
+            for (to, rows) in [(first.get_mut(at), q), (second.get_mut(at), y)] {
                 if let Some(to) = to {
                     to.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
                 }
@@ -79,68 +78,139 @@ impl Kernel for Normalise<'_> {
 /// Panels of both factors that stay in the first cache.
 const TILE: usize = 16;
 
-/// Sets the i-th square to `Vᵢᵀ B w` for every block of a basis, or to `Vᵢᵀ (B w − U M)` if such a pair is given.
-///
-/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles.
-pub(super) struct PanelDots<'a, 'b> {
-    pub basis: &'a [&'b [Panel]],
+/// `B w`, or `B w − U M` if such a pair is given.
+#[derive(Clone, Copy)]
+pub(super) struct Right<'a> {
     pub mass: &'a Product,
     pub w: &'a [Row],
     /// U and M.
     pub less: Option<(&'a [Row], &'a Square)>,
+}
+
+/// Products `Vᵢᵀ R` of every block of a basis with each of some right sides: of the first one with all blocks, then of
+/// the next. A block comes from afar, and once for all of them.
+///
+/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles.
+pub(super) struct PanelDots<'a, 'b, const N: usize> {
+    pub basis: &'a [&'b [Panel]],
+    pub right: [Right<'a>; N],
+    /// 64 rows for each block and right side.
+    pub room: &'a mut Vec<Row>,
+    pub sums: &'a mut Vec<Square>,
+}
+
+impl<const N: usize> Kernel for PanelDots<'_, '_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { basis, right, room, sums } = self;
+        let less: [Option<[L::Reg; WIDTH]>; N] =
+            std::array::from_fn(|at| right[at].less.map(|(_, factor)| factor.each_ref().map(|row| lanes.load(row))));
+        let len = right.first().map_or(0, |right| right.w.len());
+        room.clear();
+        room.resize(N * basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
+        let mut tiles = [[Panel::default(); TILE]; N];
+        let mut group = [[0.0; WIDTH]; ROWS];
+        for at in 0..len.div_ceil(TILE * ROWS) {
+            let rows = at * TILE * ROWS..len.min((at + 1) * TILE * ROWS);
+            let used = panels(rows.len());
+            for ((tile, right), factor) in tiles.iter_mut().zip(&right).zip(&less) {
+                for (panel, first) in tile[..used].iter_mut().zip(rows.clone().step_by(ROWS)) {
+                    let group = &mut group[..ROWS.min(len - first)];
+                    for (to, row) in group.iter_mut().zip(first..) {
+                        let mut sum = right.mass.row(lanes, right.w, row);
+                        if let (Some((u, _)), Some(factor)) = (&right.less, factor) {
+                            sum = block::less(lanes, sum, &u[row], factor);
+                        }
+                        *to = lanes.row(sum);
+                    }
+                    panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
+                }
+            }
+            let range = at * TILE..at * TILE + used;
+            for (number, block) in basis.iter().enumerate() {
+                let block = &block[range.clone()];
+                for (side, tile) in tiles.iter().enumerate() {
+                    let total = &mut room[(side * basis.len() + number) * WIDTH * WIDTH..][..WIDTH * WIDTH];
+                    with_tile(lanes, block, &tile[..used], total);
+                }
+            }
+        }
+        totals(room, sums);
+    }
+}
+
+/// `w −= past M`; returns `newestᵀ w`, and sets the i-th square to `Vᵢᵀ w` for every block of a basis.
+pub(super) struct Recur<'a, 'b> {
+    pub past: &'a [Row],
+    pub factor: &'a Square,
+    pub newest: &'a [Row],
+    pub w: &'a mut [Row],
+    pub basis: &'a [&'b [Panel]],
     /// 64 rows for each block.
     pub room: &'a mut Vec<Row>,
     pub sums: &'a mut Vec<Square>,
 }
 
-impl Kernel for PanelDots<'_, '_> {
-    type Output = ();
+impl Kernel for Recur<'_, '_> {
+    type Output = Square;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, mass, w, less, room, sums } = self;
-        let pair = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
+    fn run<L: Lanes>(self, lanes: L) -> Square {
+        let Self { past, factor, newest, w, basis, room, sums } = self;
+        let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
+        let mut gram = [lanes.zero(); WIDTH];
         room.clear();
         room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
         let mut tile = [Panel::default(); TILE];
-        let mut group = [[0.0; WIDTH]; ROWS];
-        for at in 0..w.len().div_ceil(TILE * ROWS) {
-            let rows = at * TILE * ROWS..w.len().min((at + 1) * TILE * ROWS);
-            let used = panels(rows.len());
-            let tile = &mut tile[..used];
-            for (panel, first) in tile.iter_mut().zip(rows.step_by(ROWS)) {
-                let group = &mut group[..ROWS.min(w.len() - first)];
-                for (to, row) in group.iter_mut().zip(first..) {
-                    let mut sum = mass.row(lanes, w, row);
-                    if let Some((u, factor)) = &pair {
-                        sum = block::less(lanes, sum, &u[row], factor);
+        for (at, w) in w.chunks_mut(TILE * ROWS).enumerate() {
+            let first = at * TILE * ROWS;
+            let used = panels(w.len());
+            for ((panel, w), first) in tile.iter_mut().zip(w.chunks_mut(ROWS)).zip((first..).step_by(ROWS)) {
+                let rows = first..first + w.len();
+                for ((w, past), newest) in w.iter_mut().zip(&past[rows.clone()]).zip(&newest[rows]) {
+                    let sum = block::less(lanes, lanes.load(w), past, &factor);
+                    *w = lanes.row(sum);
+                    for (gram, &value) in gram.iter_mut().zip(newest) {
+                        *gram = lanes.add_mul(*gram, lanes.splat(value), sum);
                     }
-                    *to = lanes.row(sum);
                 }
-                panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
+                if !basis.is_empty() {
+                    panel.0 = read(lanes, w).map(|column| lanes.wide_row(column));
+                }
             }
-            let range = at * TILE..at * TILE + used;
             for (block, total) in basis.iter().zip(room.chunks_mut(WIDTH * WIDTH)) {
-                let block = &block[range.clone()];
-                if L::MANY {
-                    // The block comes from afar, and all of a panel at once, one line after the other.
-                    for j in (0..WIDTH).step_by(2) {
-                        dots::<L, WIDTH, 2>(lanes, block, tile, (0, j), total);
-                    }
-                } else {
-                    for i in (0..WIDTH).step_by(2) {
-                        for j in (0..WIDTH).step_by(2) {
-                            dots::<L, 2, 2>(lanes, block, tile, (i, j), total);
-                        }
-                    }
-                }
+                with_tile(lanes, &block[at * TILE..at * TILE + used], &tile[..used], total);
             }
         }
-        sums.clear();
-        sums.extend(room.chunks(WIDTH * WIDTH).map(|total| -> Square {
-            std::array::from_fn(|i| std::array::from_fn(|j| total[i * WIDTH + j].iter().sum()))
-        }));
+        totals(room, sums);
+        gram.map(|sum| lanes.row(sum))
     }
+}
+
+/// Adds the products of the vectors of a block with those of a tile.
+#[inline(always)]
+fn with_tile<L: Lanes>(lanes: L, block: &[Panel], tile: &[Panel], total: &mut [Row]) {
+    if L::MANY {
+        for j in (0..WIDTH).step_by(2) {
+            dots::<L, WIDTH, 2>(lanes, block, tile, (0, j), total);
+        }
+    } else {
+        for i in (0..WIDTH).step_by(2) {
+            for j in (0..WIDTH).step_by(2) {
+                dots::<L, 2, 2>(lanes, block, tile, (i, j), total);
+            }
+        }
+    }
+}
+
+/// The products that eight partial sums each say.
+fn totals(room: &[Row], sums: &mut Vec<Square>) {
+    sums.clear();
+    sums.extend(room.chunks(WIDTH * WIDTH).map(|total| -> Square {
+        std::array::from_fn(|i| std::array::from_fn(|j| total[i * WIDTH + j].iter().sum()))
+    }));
 }
 
 /// Adds the products of `M` vectors of a block with `N` of the tile, as eight partial sums each.
@@ -180,10 +250,26 @@ const PAGE: usize = 8;
 /// It goes from the end to the beginning, for the end of the basis is what the cache has of it after [`PanelDots`].
 pub(super) struct PanelUpdate<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
-    pub factors: &'a [[[f32; WIDTH]; WIDTH]],
+    pub factors: &'a [Single],
     pub w: &'a mut [Row],
-    /// U and M.
-    pub less: Option<(&'a [Row], &'a Square)>,
+    pub less: Less<'a>,
+}
+
+/// Eight by eight numbers in single precision, by rows.
+pub(super) type Single = [[f32; WIDTH]; WIDTH];
+
+/// What [`PanelUpdate`] subtracts besides.
+pub(super) enum Less<'a> {
+    Nothing,
+    /// U M.
+    Product(&'a [Row], &'a Square),
+    /// U M, where U is changed itself thereafter: it loses Σ Vᵢ Dᵢ, and its copy in single precision is made anew.
+    Changed {
+        u: &'a mut [Row],
+        m: &'a Square,
+        factors: &'a [Single],
+        copy: &'a mut [Panel],
+    },
 }
 
 impl Kernel for PanelUpdate<'_, '_> {
@@ -191,41 +277,82 @@ impl Kernel for PanelUpdate<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, factors, w, less } = self;
-        let pair = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
-        let mut sums = [Panel::default(); PAGE];
+        let Self { basis, factors, w, mut less } = self;
+        let times = match &less {
+            Less::Nothing => [lanes.zero(); WIDTH],
+            Less::Product(_, m) | Less::Changed { m, .. } => m.each_ref().map(|row| lanes.load(row)),
+        };
+        let mut sums = [[Panel::default(); PAGE]; 2];
         for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate().rev() {
             let first = at * PAGE;
-            let sums = &mut sums[..panels(w.len())];
-            sums.fill(Panel::default());
-            for (block, factor) in basis.iter().zip(factors) {
-                let block = &block[first..first + sums.len()];
-                if L::MANY {
-                    let (pairs, rest) = block.as_chunks::<2>();
-                    let (to, last) = sums.as_chunks_mut::<2>();
-                    for (to, pair) in to.iter_mut().zip(pairs) {
-                        update::<L, 2, WIDTH>(lanes, pair, factor, to, 0);
+            let range = first..first + panels(w.len());
+            for sums in &mut sums {
+                sums[..range.len()].fill(Panel::default());
+            }
+            let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
+            for (number, block) in basis.iter().enumerate() {
+                let block = &block[range.clone()];
+                for (side, sums) in sums[..sides].iter_mut().enumerate() {
+                    let factor = match &less {
+                        Less::Changed { factors: others, .. } if side == 1 => &others[number],
+                        _ => &factors[number],
+                    };
+                    subtotal(lanes, block, factor, &mut sums[..range.len()]);
+                }
+            }
+            let mut changes = [[[0.0; WIDTH]; ROWS]; 2];
+            for (at, (group, w)) in range.zip(w.chunks_mut(ROWS)).enumerate() {
+                for (changes, sums) in changes.iter_mut().zip(&sums[..sides]) {
+                    let rows = lanes.rows(std::array::from_fn(|column| lanes.wide(&sums[at].0[column])));
+                    for (to, row) in changes.iter_mut().zip(rows) {
+                        *to = lanes.row(row);
                     }
-                    for (to, one) in last.iter_mut().zip(rest) {
-                        update::<L, 1, WIDTH>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), 0);
-                    }
-                } else {
-                    for (to, one) in sums.iter_mut().zip(block) {
-                        for j in (0..WIDTH).step_by(2) {
-                            update::<L, 1, 2>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), j);
+                }
+                let [change, other] = &changes;
+                let rows = group * ROWS..group * ROWS + w.len();
+                match &mut less {
+                    Less::Nothing => {
+                        for (w, change) in w.iter_mut().zip(change) {
+                            *w = lanes.row(lanes.sub(lanes.load(w), lanes.load(change)));
                         }
+                    }
+                    Less::Product(u, _) => {
+                        for ((w, change), u) in w.iter_mut().zip(change).zip(&u[rows]) {
+                            let left = lanes.sub(lanes.load(w), lanes.load(change));
+                            *w = lanes.row(block::less(lanes, left, u, &times));
+                        }
+                    }
+                    Less::Changed { u, copy, .. } => {
+                        let u = &mut u[rows];
+                        for ((w, change), (u, other)) in w.iter_mut().zip(change).zip(u.iter_mut().zip(other)) {
+                            let left = lanes.sub(lanes.load(w), lanes.load(change));
+                            *w = lanes.row(block::less(lanes, left, u, &times));
+                            *u = lanes.row(lanes.sub(lanes.load(u), lanes.load(other)));
+                        }
+                        copy[group].0 = read(lanes, u).map(|column| lanes.wide_row(column));
                     }
                 }
             }
-            for ((group, w), sum) in (first..).zip(w.chunks_mut(ROWS)).zip(sums) {
-                let change = lanes.rows(std::array::from_fn(|at| lanes.wide(&sum.0[at])));
-                for ((row, w), change) in (group * ROWS..).zip(w).zip(change) {
-                    let mut left = lanes.sub(lanes.load(w), change);
-                    if let Some((u, factor)) = &pair {
-                        left = block::less(lanes, left, &u[row], factor);
-                    }
-                    *w = lanes.row(left);
-                }
+        }
+    }
+}
+
+/// Adds the products of a block's panels with a factor to as many panels.
+#[inline(always)]
+fn subtotal<L: Lanes>(lanes: L, block: &[Panel], factor: &Single, sums: &mut [Panel]) {
+    if L::MANY {
+        let (pairs, rest) = block.as_chunks::<2>();
+        let (to, last) = sums.as_chunks_mut::<2>();
+        for (to, pair) in to.iter_mut().zip(pairs) {
+            update::<L, 2, WIDTH>(lanes, pair, factor, to, 0);
+        }
+        for (to, one) in last.iter_mut().zip(rest) {
+            update::<L, 1, WIDTH>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), 0);
+        }
+    } else {
+        for (to, one) in sums.iter_mut().zip(block) {
+            for j in (0..WIDTH).step_by(2) {
+                update::<L, 1, 2>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), j);
             }
         }
     }
@@ -236,7 +363,7 @@ impl Kernel for PanelUpdate<'_, '_> {
 fn update<L: Lanes, const P: usize, const N: usize>(
     lanes: L,
     block: &[Panel; P],
-    factor: &[[f32; WIDTH]; WIDTH],
+    factor: &Single,
     to: &mut [Panel; P],
     j: usize,
 ) {

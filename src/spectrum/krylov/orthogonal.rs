@@ -1,15 +1,28 @@
-//! Keeping a basis orthogonal, and what it costs that it is in single precision and not orthogonal to the last digit.
+//! Keeping a basis orthogonal, in single precision and not in every step.
 //!
-//! Not every step needs all earlier blocks for that. A loss that is small grows in one step by a ratio of couplings,
-//! and counts in the second order only (see [`projected()`](super::projected())), as long as what is taken out of a
-//! block stays in the projected operator (partial reorthogonalisation: Simon 1984; for blocks Grimes, Lewis and Simon
-//! 1994, § 4.3). They estimate the losses; here they are measured where they are taken out.
+//! Let V be the basis, T the block tridiagonal matrix of the recurrence, and C what orthogonalisation takes out of
+//! the products besides, so that `S V = V (T + C)` but for the last block, with entries of C above the diagonal of
+//! blocks only. With `VᵀBV = RᵀR` by Cholesky's decomposition, N = V R⁻¹ is orthonormal, and
+//! `NᵀBSN = R (T + C) R⁻¹`. The left side is symmetric, and below the diagonal the right side is that of T alone,
+//! scaled by the blocks on the diagonal of R. These are 1 up to the squares of what the basis lacks, and so is the
+//! diagonal of the product that of T, as long as neighbouring blocks are orthogonal to rounding. So T is the
+//! projected operator, whatever C is (Simon 1984, *The Lanczos algorithm with partial reorthogonalization*), and two
+//! things are needed:
+//!
+//! - neighbouring blocks orthogonal to all digits: that is the recurrence's work, in double precision;
+//! - all others to about the root of the accuracy that is wanted. What single precision leaves, some 3e-9, grows
+//!   tenfold in a step, so that most steps can do without. Because a block comes of the two before it, it is the last
+//!   two that are made orthogonal together (Grimes, Lewis and Simon 1994, *A shifted block Lanczos algorithm*, § 4.3),
+//!   in one pass over the basis: for its bytes are what that costs. [`Losses`] says when it is due.
+//!
+//! A basis in double precision is made orthogonal to all blocks in every step. It is for pieces where the squares
+//! count, too, so that there C is known and enters the operator ([`projected()`](super::projected())).
 
 use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
     block::{Dots, Multiply, Square, Update},
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Panel, PanelDots, PanelUpdate},
+    panel::{Less, Panel, PanelDots, PanelUpdate, Right, Single},
     pencil::Product,
     poll::{Poll, Stop},
     timings::Cost,
@@ -19,46 +32,194 @@ use crate::spectrum::{
 /// which losses grow a hundredfold in a step where they grow tenfold along others.
 pub(super) const FIRST: usize = 3;
 
-/// Where orthogonalisation to the others took less than this share out of a block, the next step may leave them to the
-/// step after it.
-const SLIGHT: f64 = 2e-6;
+/// What a pass in single precision leaves of orthogonality.
+const FLOOR: f64 = 5e-9;
 
-impl Krylov<'_> {
-    /// How many blocks the next step is made orthogonal to.
-    pub(super) fn against(&self) -> usize {
-        let blocks = self.blocks();
-        let all = self.due || matches!(self.basis, Basis::Double(_));
-        if all { blocks } else { FIRST.min(blocks) }
+/// How far the newest block may be from orthogonal when the next one is made without looking at the basis.
+const SLIGHT: f64 = 5e-7;
+
+/// How far a block may be from orthogonal to stay in the basis.
+const MOST: f64 = 1e-4;
+
+/// How far the blocks of a basis are from orthogonal to those before them, but for the first ones.
+#[derive(Debug, Default)]
+pub(super) struct Losses {
+    /// The newest block and the one before it, as estimated.
+    newest: f64,
+    before: f64,
+    /// The largest square of what a block lacks, times its couplings: since the last pass as estimated, and before.
+    since: f64,
+    square: f64,
+    /// Half of what a block has lost in length because it was mended: what the next block is coupled to is shorter.
+    shortened: Option<Square>,
+    /// The largest error of what was taken out, for being a combination of rounded vectors.
+    rounded: f64,
+}
+
+impl Losses {
+    /// Whether the next step has to look at the whole basis.
+    fn due(&self) -> bool {
+        self.newest > SLIGHT
     }
 
-    /// Makes `work` B-orthogonal to the first so many blocks and to the locked vectors, and returns its components
-    /// along the blocks, without those along the newest one that are known already.
+    /// What a step loses with couplings of these norms along the basis and to the block before the newest, and so
+    /// little left at least: the recurrence of the basis, multiplied with the basis (Simon 1984), in norms.
+    fn grown(&self, along: f64, before: f64, left: f64) -> f64 {
+        ((along * self.newest + before * self.before) / left).max(FLOOR)
+    }
+
+    /// A pass over the basis has mended the newest block, which was so far off and has couplings of that norm.
+    fn mend(&mut self, off: f64, coupled: f64) {
+        // The blocks since the last pass were estimated as the newest one was.
+        let since = self.since * (off / self.newest).powi(2).max(1.0);
+        self.square = self.square.max(since).max(off * FLOOR.max(off * off) * coupled);
+        (self.newest, self.since) = (FLOOR, 0.0);
+    }
+
+    fn round(&mut self, taken: &[Square]) {
+        self.rounded = self.rounded.max(largest(taken) * f64::from(f32::EPSILON));
+    }
+
+    /// A new block that is so far off, after one with couplings of that norm.
+    fn push(&mut self, off: f64, coupled: f64) {
+        self.since = self.since.max(self.newest * self.newest * coupled);
+        (self.before, self.newest) = (self.newest, off);
+    }
+
+    #[cfg(test)]
+    pub(super) fn spoil(&mut self, off: f64) {
+        self.newest = off;
+    }
+
+    /// By how much the projected operator is off, in the Frobenius norm of a block, on both sides of it.
+    fn leak(&self) -> f64 {
+        2.0 * WIDTH as f64 * self.square.max(self.since) + self.rounded
+    }
+}
+
+impl Krylov<'_> {
+    /// Whether the next step is made orthogonal to all blocks, together with the newest one.
+    pub(super) fn due(&self) -> bool {
+        self.blocks() > FIRST + 1 && self.losses.due()
+    }
+
+    /// The coupling of the newest block to the one before it.
+    fn coupled(&self) -> f64 {
+        self.beta.last().map_or(0.0, |beta| largest(&[*beta]))
+    }
+
+    /// The largest coupling of blocks of the basis but for the first ones: ‖T‖ among them.
+    fn reach(&self) -> f64 {
+        let couplings = self.alpha.iter().zip(&self.beta).skip(FIRST);
+        couplings.map(|(alpha, beta)| largest(&[*alpha, *beta])).fold(0.0, f64::max)
+    }
+
+    /// Makes `work` B-orthogonal to the basis, as far as the step has to: takes the newest block times `along` out of
+    /// it, and what is there of others. `seen` are its components along the first blocks, if they are known. Returns
+    /// the norm of what was there, if it was looked for along all older blocks.
     pub(super) fn orthogonalise(
         &mut self,
-        blocks: usize,
-        known: Option<&Square>,
+        along: &Square,
+        seen: Vec<Square>,
         poll: &mut Poll,
-    ) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, images, exact, now, work, mass, newest, room, .. } = &mut *self.scratch;
+    ) -> Result<Option<f64>, Stop> {
+        let older = self.blocks() - 1;
+        let lost = match self.basis {
+            Basis::Double(_) => {
+                let Scratch { now, work, .. } = &mut *self.scratch;
+                dispatch(Update { basis: &[now.rows()], factors: &[*along], w: work.rows_mut() });
+                let lost = self.clean(older + 1, poll)?;
+                self.lost.push(lost);
+                None
+            }
+            Basis::Single if self.due() => Some(self.pair(along, poll)?),
+            Basis::Single => {
+                let count = older.min(FIRST);
+                let Scratch { blocks, images, now, work, room, .. } = &mut *self.scratch;
+                let mut sums = seen;
+                if sums.is_empty() {
+                    let images = panels(&images[..count]);
+                    let right = [Right { mass: &Product::Unit, w: work.rows(), less: Some((now.rows(), along)) }];
+                    dispatch(PanelDots { basis: &images, right, room, sums: &mut sums });
+                }
+                let less = Less::Product(now.rows(), along);
+                let (basis, factors) = (panels(&blocks[..count]), single(&sums));
+                dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
+                poll.spend(work.rows().len() * count * WIDTH)?;
+                self.losses.round(&sums);
+                (count == older).then(|| largest(&sums))
+            }
+        };
+        poll.charge(Cost::Orthogonalisation);
+        Ok(lost)
+    }
+
+    /// Makes the newest block V and `work` orthogonal to all older blocks.
+    ///
+    /// With C the components of V, and D those of w = `work` − V M: `V' = V − Σ Vₖ Cₖ` and
+    /// `w' = w − Σ Vₖ Dₖ + V Σ CₖᵀDₖ`, so that these two neighbours stay orthogonal to the second order, too.
+    fn pair(&mut self, along: &Square, poll: &mut Poll) -> Result<f64, Stop> {
+        let older = self.blocks() - 1;
+        let Scratch { blocks, now, work, newest, room, .. } = &mut *self.scratch;
+        let len = work.rows().len();
+        let (basis, rest) = blocks.split_at_mut(older);
+        let basis = panels(basis);
+        let right = [
+            Right { mass: &Product::Unit, w: newest.rows(), less: None },
+            Right { mass: &self.pencil.mass, w: work.rows(), less: Some((newest.rows(), along)) },
+        ];
+        let mut sums = Vec::new();
+        dispatch(PanelDots { basis: &basis, right, room, sums: &mut sums });
+        poll.spend(len * older * WIDTH)?;
+        let (c, d) = sums.split_at_mut(older);
+        // It is orthogonal to the block before it to more digits than are seen here.
+        c[older - 1] = Square::default();
+        let along: Square = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let both = c.iter().zip(&*d).flat_map(|(c, d)| c.iter().zip(d));
+                both.fold(along[i][j], |left, (c, d)| left - c[i] * d[j])
+            })
+        });
+        if let Some(alpha) = self.alpha.last_mut() {
+            *alpha = symmetric(&along);
+        }
+        let (factors, others) = (single(d), single(c));
+        let less = Less::Changed { u: now.rows_mut(), m: &along, factors: &others, copy: &mut rest[0] };
+        dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
+        poll.spend(len * older * WIDTH)?;
+        // The newest block has become shorter by half of CᵀC, and T is that of blocks of length one: what is below its
+        // diagonal block there is so much more, and what is beside it so much less.
+        let lacks: Square = std::array::from_fn(|i| {
+            std::array::from_fn(|j| 0.5 * c.as_flattened().iter().fold(0.0, |sum, row| sum + row[i] * row[j]))
+        });
+        if let Some(beta) = self.beta.last_mut() {
+            let less = product(&lacks, beta);
+            for (beta, less) in beta.as_flattened_mut().iter_mut().zip(less.as_flattened()) {
+                *beta -= less;
+            }
+        }
+        self.losses.mend(largest(c), largest(&[along]).max(self.coupled()));
+        self.losses.shortened = Some(lacks);
+        self.losses.round(d);
+        Ok(largest(d))
+    }
+
+    /// Makes `work` orthogonal to the first so many blocks, but for the last of them if the basis is in single
+    /// precision ([`next_to`](Self::next_to) does that), and to the locked vectors. Returns its components along the
+    /// blocks.
+    pub(super) fn clean(&mut self, blocks: usize, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
+        let Scratch { blocks: basis, exact, work, mass, room, .. } = &mut *self.scratch;
+        let len = work.rows().len();
         let mut sums = Vec::new();
         match self.basis {
             Basis::Single => {
-                let basis: Vec<&[Panel]> = basis[..blocks].iter().map(Vec::as_slice).collect();
-                // VᵀBw is (BV)ᵀw where there is BV, and else Vᵀ(Bw).
-                let (w, sums) = (work.rows(), &mut sums);
-                if blocks <= FIRST {
-                    let images: Vec<&[Panel]> = images[..blocks].iter().map(Vec::as_slice).collect();
-                    let less = known.map(|alpha| (now.rows(), alpha));
-                    dispatch(PanelDots { basis: &images, mass: &Product::Unit, w, less, room, sums });
-                } else {
-                    let less = known.map(|alpha| (newest.rows(), alpha));
-                    dispatch(PanelDots { basis: &basis, mass: &self.pencil.mass, w, less, room, sums });
-                }
-                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
-                let single: Vec<_> = sums.iter().map(|sum| sum.map(|row| row.map(|value| value as f32))).collect();
-                let less = known.map(|alpha| (now.rows(), alpha));
-                dispatch(PanelUpdate { basis: &basis, factors: &single, w: work.rows_mut(), less });
-                poll.spend(work.rows().len() * blocks * WIDTH / 2)?;
+                let basis = panels(&basis[..blocks.saturating_sub(1)]);
+                let right = [Right { mass: &self.pencil.mass, w: work.rows(), less: None }];
+                dispatch(PanelDots { basis: &basis, right, room, sums: &mut sums });
+                poll.spend(len * blocks * WIDTH / 2)?;
+                let (factors, less) = (single(&sums), Less::Nothing);
+                dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
+                poll.spend(len * blocks * WIDTH / 2)?;
             }
             Basis::Double(locked) => {
                 let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
@@ -66,9 +227,9 @@ impl Krylov<'_> {
                 poll.charge(Cost::Products);
                 sums.resize(all.len(), Square::default());
                 dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
-                poll.spend(work.rows().len() * all.len() * WIDTH)?;
+                poll.spend(len * all.len() * WIDTH)?;
                 dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
-                poll.spend(work.rows().len() * all.len() * WIDTH)?;
+                poll.spend(len * all.len() * WIDTH)?;
                 sums.truncate(blocks);
             }
         }
@@ -76,68 +237,104 @@ impl Krylov<'_> {
         Ok(sums)
     }
 
-    /// Whether a block is to be made orthogonal once more.
-    ///
-    /// Where more was taken out than is left, one pass in single precision leaves too much of it: the space is
-    /// exhausted but for what hardly differs, as where some triangles are many orders smaller than the others. And
-    /// where little is left, what a step did not look for may be too much of that: it is some ten times what the step
-    /// before took out.
-    pub(super) fn spoilt(&self, lost: &[Square], beta: &Square) -> bool {
-        let unseen = if lost.len() < self.blocks() { self.taken / (10.0 * SLIGHT) } else { 0.0 };
-        (0..WIDTH).any(|column| norm(lost, column).max(unseen) > norm(&[*beta], column))
+    /// Makes `work` orthogonal to the newest block; `mass` is B times it, before and after.
+    pub(super) fn next_to(&mut self) {
+        let Scratch { now, work, mass, newest, .. } = &mut *self.scratch;
+        let mut sum = [Square::default()];
+        dispatch(Dots { basis: &[now.rows()], t: mass.rows(), sums: &mut sum });
+        dispatch(Update { basis: &[now.rows()], factors: &sum, w: work.rows_mut() });
+        dispatch(Update { basis: &[newest.rows()], factors: &sum, w: mass.rows_mut() });
     }
 
-    /// Takes what is left of the basis out of the block after the newest, once more.
-    pub(super) fn again(
-        &mut self,
-        blocks: usize,
-        lost: &mut Vec<Square>,
-        beta: &mut Square,
-        poll: &mut Poll,
-    ) -> Result<(), Stop> {
-        let Scratch { next, work, .. } = &mut *self.scratch;
-        work.flat().copy_from_slice(next.flat());
-        let more = self.orthogonalise(blocks, None, poll)?;
-        lost.resize(blocks, Square::default());
-        for (lost, more) in lost.iter_mut().zip(&more) {
-            let more = product(more, beta);
-            for (lost, more) in lost.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
-                *lost += more;
+    /// Whether so little is left of a column that it is not orthogonal to the newest block to rounding.
+    pub(super) fn shrunk(&self, gram: &Square) -> bool {
+        let Some(alpha) = self.alpha.last() else { return false };
+        (0..WIDTH).any(|column| {
+            let before = self.beta.last().map_or(0.0, |beta| beta[column].iter().map(|value| value * value).sum());
+            gram[column][column] < 1e-2 * (norm(&[*alpha], column).powi(2) + before)
+        })
+    }
+
+    /// Notes what a step has lost, and takes what is left of the basis out of the next block if that is too much: where
+    /// hardly anything was left of it, the space being exhausted but for what hardly differs, as where some triangles
+    /// are many orders smaller than the others.
+    pub(super) fn note(&mut self, lost: Option<f64>, beta: &mut Square, poll: &mut Poll) -> Result<(), Stop> {
+        if matches!(self.basis, Basis::Double(_)) {
+            return self.note_all(beta, poll);
+        }
+        if let Some(shortened) = self.losses.shortened.take() {
+            let more = product(beta, &shortened);
+            for (beta, more) in beta.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
+                *beta += more;
             }
         }
-        *beta = product(&self.normalise(blocks, poll)?, beta);
+        let blocks = self.blocks();
+        let left = (0..WIDTH).map(|column| norm(&[*beta], column)).fold(f64::INFINITY, f64::min);
+        let mut off = match lost {
+            Some(lost) => FLOOR * (lost / left).max(1.0),
+            None => self.losses.grown(self.reach(), self.coupled(), left),
+        };
+        if off.is_nan() || off > MOST {
+            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
+            work.flat().copy_from_slice(next.flat());
+            // Where B times the newest block was left.
+            std::mem::swap(mass, newest);
+            self.clean(blocks, poll)?;
+            self.gram(poll);
+            self.next_to();
+            *beta = product(&self.normalise(blocks, poll)?, beta);
+            off = FLOOR;
+        }
+        let own = self.alpha.last().map_or(0.0, |alpha| largest(&[*alpha, *beta]));
+        self.losses.push(off, own.max(self.coupled()));
         Ok(())
     }
 
-    /// Notes what orthogonalisation took out of a block, and what the next step has to do.
-    pub(super) fn note(&mut self, lost: &[Square], beta: &Square) {
-        let largest = |squares: &[Square]| (0..WIDTH).map(|column| norm(squares, column)).fold(0.0, f64::max);
-        if let Basis::Single = self.basis {
-            let rounded = largest(lost) * f64::from(f32::EPSILON);
-            let couplings = self.alpha.iter().zip(self.beta.iter().chain([beta]));
-            let skew = lost.iter().zip(couplings).map(|(lost, (alpha, beta))| {
-                let (lost, coupling) = (largest(&[*lost]), largest(&[*alpha, *beta]));
-                lost * (lost / coupling).min(1.0)
-            });
-            self.off = self.off.max(rounded).max(skew.sum());
+    /// The same for a basis in double precision: where more was taken out than is left, it is looked for once more.
+    fn note_all(&mut self, beta: &mut Square, poll: &mut Poll) -> Result<(), Stop> {
+        let Some(mut lost) = self.lost.pop() else { return Ok(()) };
+        if (0..WIDTH).any(|column| norm(&lost, column) > norm(&[*beta], column)) {
+            let Scratch { next, work, .. } = &mut *self.scratch;
+            work.flat().copy_from_slice(next.flat());
+            let more = self.clean(self.blocks(), poll)?;
+            for (lost, more) in lost.iter_mut().zip(&more) {
+                let more = product(more, beta);
+                for (lost, more) in lost.as_flattened_mut().iter_mut().zip(more.as_flattened()) {
+                    *lost += more;
+                }
+            }
+            *beta = product(&self.normalise(self.blocks(), poll)?, beta);
         }
-        let others = &lost[FIRST.min(lost.len())..];
-        let slight = (0..WIDTH).all(|column| norm(others, column) <= SLIGHT * norm(&[*beta], column));
-        self.due = !slight || lost.len() < self.alpha.len();
-        self.taken = largest(others);
+        self.lost.push(lost);
+        Ok(())
     }
 
-    /// By how much the projected operator is off, for two reasons. The components C that orthogonalisation took out
-    /// are those along vectors rounded to single precision, whose products with each other are not quite those of an
-    /// orthonormal basis. And that basis is off orthogonality by some Ω, and the operator by ‖Ω‖ ‖C‖
-    /// ([`projected()`](super::projected())). C came of Ω, multiplied by couplings: of what was taken out along a block
-    /// its share in the coupling there is what Ω was.
+    /// By how much the projected operator is off: ‖T‖ times the square of what the basis is off orthogonality by, and
+    /// what comes of rounding.
     pub(in crate::spectrum) fn leak(&self) -> f64 {
-        self.off
+        self.losses.leak()
     }
+}
+
+fn panels(blocks: &[Vec<Panel>]) -> Vec<&[Panel]> {
+    blocks.iter().map(Vec::as_slice).collect()
+}
+
+fn single(squares: &[Square]) -> Vec<Single> {
+    squares.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect()
+}
+
+/// The symmetric part.
+pub(super) fn symmetric(square: &Square) -> Square {
+    std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (square[i][j] + square[j][i])))
 }
 
 /// The norm of a column of squares that stand on each other.
 pub(super) fn norm(squares: &[Square], column: usize) -> f64 {
     squares.iter().flatten().map(|row| row[column] * row[column]).sum::<f64>().sqrt()
+}
+
+/// The largest of these norms.
+fn largest(squares: &[Square]) -> f64 {
+    (0..WIDTH).map(|column| norm(squares, column)).fold(0.0, f64::max)
 }

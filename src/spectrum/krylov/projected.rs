@@ -4,11 +4,11 @@ use crate::spectrum::{block::Square, lanes::WIDTH};
 
 /// The projected operator as a full matrix.
 ///
-/// With V the basis, S the operator and C the components that orthogonalisation took out of the products,
-/// `S V = V (T + C)` but for the last block. The basis is orthonormal up to a small Ω, and for its orthonormal
-/// version N = V (1 + Ω)^(−1/2), to the first order in Ω, `NᵀBSN = T + C + (ΩT − TΩ)/2`. The left side is symmetric
-/// and the last term skew, so it is `T + (C + Cᵀ)/2`, up to ‖Ω‖ ‖C‖. What single precision leaves out of the
-/// orthogonality of the basis is thereby felt in the second order only.
+/// It is block tridiagonal whatever orthogonalisation took out of the products
+/// ([`orthogonal`](super::orthogonal)), up to squares of what the basis lacks. Where the components C that were taken
+/// out are given, they are known to the first order in another way: with `VᵀBV = 1 + Ω` and the orthonormal
+/// N = V (1 + Ω)^(−1/2), `NᵀBSN = T + C + (ΩT − TΩ)/2`. The left side is symmetric and the last term skew, so it is
+/// `T + (C + Cᵀ)/2`.
 pub(super) fn projected(alpha: &[Square], beta: &[Square], lost: &[Vec<Square>], to: &mut Vec<f64>) {
     let blocks = alpha.len();
     let n = blocks * WIDTH;
@@ -24,7 +24,7 @@ pub(super) fn projected(alpha: &[Square], beta: &[Square], lost: &[Vec<Square>],
                     add(first + WIDTH + i, first + j, beta[block][i][j]);
                     add(first + j, first + WIDTH + i, beta[block][i][j]);
                 }
-                for (other, lost) in lost[block].iter().enumerate() {
+                for (other, lost) in lost.get(block).into_iter().flatten().enumerate() {
                     add(other * WIDTH + i, first + j, 0.5 * lost[i][j]);
                     add(first + j, other * WIDTH + i, 0.5 * lost[i][j]);
                 }

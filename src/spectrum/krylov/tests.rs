@@ -1,6 +1,6 @@
 //! The basis, the residuals, and blocks that lose a column.
 
-use super::{orthogonal::norm, *};
+use super::*;
 use crate::{
     laplacian::{Choice, assemble},
     mesh::Mesh,
@@ -16,25 +16,28 @@ fn factored(mesh: &Mesh, sigma: f64) -> (Pencil, Factor) {
     (pencil, factor)
 }
 
+/// A block of a basis.
+fn rows(krylov: &Krylov, block: usize) -> Vec<Row> {
+    match krylov.basis {
+        Basis::Double(_) => krylov.scratch.exact[block].rows().to_vec(),
+        Basis::Single => {
+            let panels = &krylov.scratch.blocks[block];
+            let rows = 0..krylov.pencil.order();
+            rows.map(|at| panels[at / ROWS].0.map(|column| f64::from(column[at % ROWS]))).collect()
+        }
+    }
+}
+
 /// How far the basis of a finished process is from orthonormal.
 fn defect(krylov: &Krylov) -> f64 {
     let n = krylov.pencil.order();
     let mut product = vec![[0.0; WIDTH]; n];
-    let rows = |block: usize| -> Vec<Row> {
-        match krylov.basis {
-            Basis::Double(_) => krylov.scratch.exact[block].rows().to_vec(),
-            Basis::Single => {
-                let panels = &krylov.scratch.blocks[block];
-                (0..n).map(|at| panels[at / ROWS].0.map(|column| f64::from(column[at % ROWS]))).collect()
-            }
-        }
-    };
     let mut worst = 0.0_f64;
     for i in 0..krylov.blocks() {
-        dispatch(Multiply { mass: &krylov.pencil.mass, x: &rows(i), to: &mut product });
+        dispatch(Multiply { mass: &krylov.pencil.mass, x: &rows(krylov, i), to: &mut product });
         for j in 0..krylov.blocks() {
             let mut sum = [Square::default()];
-            dispatch(Dots { basis: &[&rows(j)], t: &product, sums: &mut sum });
+            dispatch(Dots { basis: &[&rows(krylov, j)], t: &product, sums: &mut sum });
             for (k, row) in sum[0].iter().enumerate() {
                 for (l, entry) in row.iter().enumerate() {
                     worst = worst.max((entry - f64::from(u8::from(i == j && k == l))).abs());
@@ -62,8 +65,8 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
     let (single, _, rounded) = run(Basis::Single);
     let (ritz, vectors, defect) = run(Basis::Double(&[]));
     assert!(defect < 1e-12, "{defect:e}");
-    // Single precision leaves so much; the projected operator feels its square.
-    assert!(rounded < 5e-7, "{rounded:e}");
+    // So much may be lost; the projected operator feels its square.
+    assert!(rounded < 2e-6, "{rounded:e}");
     for (single, double) in single[..40].iter().zip(&ritz) {
         let bound = 1e-12 * double.theta.abs() + 10.0 * double.residual;
         assert!((single.theta - double.theta).abs() < bound, "{single:?} {double:?}");
@@ -115,28 +118,104 @@ fn dependent_columns_are_replaced() {
     }
 }
 
+/// How far a basis in double precision is from orthonormal: what neighbouring blocks lack, and what the others lack.
+fn lacks(exact: &[Vec<Row>], pencil: &Pencil) -> (f64, f64) {
+    let mut product = vec![[0.0; WIDTH]; pencil.order()];
+    let (mut near, mut far) = (0.0_f64, 0.0_f64);
+    for (i, block) in exact.iter().enumerate() {
+        dispatch(Multiply { mass: &pencil.mass, x: block, to: &mut product });
+        for (j, other) in exact[..=i].iter().enumerate() {
+            let mut sum = [Square::default()];
+            dispatch(Dots { basis: &[other], t: &product, sums: &mut sum });
+            for (k, row) in sum[0].iter().enumerate() {
+                for (l, entry) in row.iter().enumerate() {
+                    let off = (entry - f64::from(u8::from(i == j && k == l))).abs();
+                    if i - j < 2 { near = near.max(off) } else { far = far.max(off) }
+                }
+            }
+        }
+    }
+    (near, far)
+}
+
 #[test]
-fn few_steps_need_all_blocks() {
+fn few_steps_look_at_the_whole_basis_and_neighbours_stay_orthogonal() {
     let sigma = 321.0;
     let (pencil, factor) = factored(&shapes::rectangle(60, 41), sigma);
     let (mut poll, mut scratch) = (Poll::new(&Unwatched), Scratch::default());
     let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
-    while krylov.blocks() < 24 || krylov.against() == krylov.blocks() {
+    let mut passes = Vec::new();
+    let mut exact: Vec<Vec<Row>> = Vec::new();
+    while krylov.blocks() < 24 {
+        if krylov.due() {
+            passes.push(krylov.blocks());
+        }
         krylov.step(&mut poll).unwrap();
+        // The block before the newest is the one that a pass changes.
+        exact.push(krylov.scratch.past.rows().to_vec());
     }
-    let saved = krylov.lost.iter().enumerate().filter(|(at, lost)| lost.len() <= *at).count();
-    assert!((6..=11).contains(&saved), "{saved}");
-    assert!(krylov.lost.windows(2).enumerate().all(|(at, pair)| pair[0].len() > at || pair[1].len() > at + 1));
-    let off = defect(&krylov);
-    assert!(off < 5e-6, "{off:e}");
+    assert!((4..=7).contains(&passes.len()), "{passes:?}");
+    let (near, far) = lacks(&exact, &pencil);
+    // What a block lacked that was mended, squared; single precision would leave 3e-9.
+    assert!(near < 4e-10, "{near:e}");
+    // Something is lost, or the test would not say anything.
+    assert!((1e-8..2e-6).contains(&far), "{far:e}");
     // What is off comes to so little in the projected operator.
-    let least = norm(&[*krylov.beta.last().unwrap()], 0);
+    let least = krylov.beta.last().unwrap().as_flattened().iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     assert!(krylov.leak() > 0.0 && krylov.leak() < 1e-9 * least, "{:e} {least:e}", krylov.leak());
+    // It is no less than what the operator loses in the second order.
+    assert!(krylov.leak() > far * far * least, "{:e}", krylov.leak());
 
-    // A step that looked at the first blocks alone is not enough where little is left.
-    let (few, all) = (vec![Square::default(); 3], vec![Square::default(); krylov.blocks()]);
-    let left =
-        |size: f64| -> Square { std::array::from_fn(|i| std::array::from_fn(|j| if i == j { size } else { 0.0 })) };
-    assert!(!krylov.spoilt(&few, &left(least)) && krylov.spoilt(&few, &left(1e-5 * least)));
-    assert!(!krylov.spoilt(&all, &left(1e-5 * least)));
+    let ritz = krylov.ritz(&mut poll).unwrap();
+    let mut double = Krylov::start(&pencil, &factor, sigma, 5, Basis::Double(&[]), &mut scratch, &mut poll).unwrap();
+    while double.blocks() < 24 {
+        double.step(&mut poll).unwrap();
+    }
+    let double = double.ritz(&mut poll).unwrap();
+    for (single, double) in ritz[..60].iter().zip(&double) {
+        let bound = 1e-14 * ritz[0].theta.abs() + double.residual.powi(2) / double.theta.abs();
+        assert!((single.theta - double.theta).abs() < bound, "{single:?} {double:?}");
+    }
+}
+
+#[test]
+fn a_block_that_is_mended_leaves_no_trace() {
+    let sigma = 321.0;
+    let (pencil, factor) = factored(&shapes::rectangle(60, 41), sigma);
+    let (mut poll, mut scratch) = (Poll::new(&Unwatched), Scratch::default());
+    let mut run = |spoil: f64| {
+        let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
+        while krylov.blocks() < 22 {
+            if krylov.blocks() == 12 && spoil != 0.0 {
+                // As if it had never been orthogonal to an older block.
+                let longer = (1.0 + spoil * spoil).sqrt();
+                for value in krylov.beta.last_mut().unwrap().as_flattened_mut() {
+                    *value *= longer;
+                }
+                let mut image = vec![[0.0; WIDTH]; pencil.order()];
+                let older = rows(&krylov, 6);
+                dispatch(Multiply { mass: &pencil.mass, x: &older, to: &mut image });
+                let Scratch { now, newest, work, .. } = &mut *krylov.scratch;
+                for (to, more) in [(now, &older), (newest, &image), (work, &image)] {
+                    for (to, more) in to.rows_mut().iter_mut().zip(more) {
+                        for (to, more) in to.iter_mut().zip(more) {
+                            *to = (*to + spoil * more) / longer;
+                        }
+                    }
+                }
+                krylov.losses.spoil(spoil);
+            }
+            krylov.step(&mut poll).unwrap();
+        }
+        krylov.ritz(&mut poll).unwrap()
+    };
+    let sorted = |ritz: Vec<Ritz>| {
+        let mut theta: Vec<f64> = ritz.iter().map(|ritz| ritz.theta).collect();
+        theta.sort_by(f64::total_cmp);
+        theta
+    };
+    let (clean, spoilt) = (sorted(run(0.0)), sorted(run(1e-4)));
+    let most = clean.iter().zip(&spoilt).fold(0.0_f64, |most, (clean, spoilt)| most.max((clean - spoilt).abs()));
+    // A tenth of what its square comes to, where nothing is done about the block's length.
+    assert!(most < 4e-13, "{most:e}");
 }
