@@ -118,21 +118,75 @@ impl<'a> Pulse<'a> {
     /// # Errors
     /// When the watch has cancelled; the items are then in some order.
     pub fn sort<T>(&self, items: &mut [T], compare: &impl Fn(&T, &T) -> std::cmp::Ordering) -> Result<(), Stopped> {
-        /// What is sorted between two looks at the watch: less than a millisecond of work.
-        const RUN: usize = 1 << 14;
-        if items.is_sorted_by(|a, b| compare(a, b).is_le()) {
-            return self.beat(10 * items.len());
+        if self.sorted(items, compare)? {
+            return Ok(());
         }
-        if items.len() <= RUN {
+        if items.len() <= Self::RUN {
             items.sort_unstable_by(compare);
             return self.beat(60 * items.len());
         }
-        let middle = items.len() / 2;
-        items.select_nth_unstable_by(middle, compare);
-        self.beat(10 * items.len())?;
+        let mut middle = self.part(items, compare)?;
+        if 16 * middle.min(items.len() - middle) < items.len() {
+            // The sample was no likeness of the items.
+            middle = items.len() / 2;
+            items.select_nth_unstable_by(middle, compare);
+            self.beat(20 * items.len())?;
+        }
         let (lower, upper) = items.split_at_mut(middle);
         self.sort(lower, compare)?;
         self.sort(&mut upper[1..], compare)
+    }
+
+    /// What is sorted between two looks at the watch: less than a millisecond of work.
+    const RUN: usize = 1 << 14;
+
+    fn sorted<T>(&self, items: &[T], compare: &impl Fn(&T, &T) -> std::cmp::Ordering) -> Result<bool, Stopped> {
+        let ordered = |a: &T, b: &T| compare(a, b).is_le();
+        for start in (0..items.len()).step_by(Self::RUN) {
+            // The first of the next run too.
+            let end = (start + Self::RUN + 1).min(items.len());
+            if !items[start..end].is_sorted_by(ordered) {
+                return Ok(false);
+            }
+            self.beat(3 * Self::RUN)?;
+        }
+        Ok(true)
+    }
+
+    /// Puts what is less than one of the items before it and the others after it; returns where it then is. It is the
+    /// median of a sample.
+    fn part<T>(&self, items: &mut [T], compare: &impl Fn(&T, &T) -> std::cmp::Ordering) -> Result<usize, Stopped> {
+        const SAMPLE: usize = 63;
+        let mut sample: [usize; SAMPLE] = std::array::from_fn(|at| at * (items.len() - 1) / (SAMPLE - 1));
+        sample.sort_unstable_by(|&a, &b| compare(&items[a], &items[b]));
+        items.swap(0, sample[SAMPLE / 2]);
+        let Some((pivot, rest)) = items.split_first_mut() else { return Ok(0) };
+        let mut less = 0;
+        for start in (0..rest.len()).step_by(Self::RUN) {
+            for at in start..(start + Self::RUN).min(rest.len()) {
+                // Without a branch, which would be mispredicted every other time.
+                let is_less = compare(&rest[at], pivot).is_lt();
+                rest.swap(at, less);
+                less += usize::from(is_less);
+            }
+            self.beat(5 * Self::RUN)?;
+        }
+        items.swap(0, less);
+        Ok(less)
+    }
+
+    /// So many of the same. Memory that is new takes the system some time: a page of it about as long as to write it.
+    ///
+    /// # Errors
+    /// When the watch has cancelled.
+    pub fn filled<T: Copy>(&self, value: T, count: usize) -> Result<Vec<T>, Stopped> {
+        let mut all = Vec::with_capacity(count);
+        while all.len() < count {
+            let next = (all.len() + Self::RUN).min(count);
+            all.resize(next, value);
+            self.beat(Self::RUN * size_of::<T>() / 2)?;
+        }
+        Ok(all)
     }
 }
 

@@ -152,7 +152,7 @@ fn is_soup(mesh: &Mesh, pulse: &Pulse) -> Result<bool, Stopped> {
 
 /// The faces as they are; flat ones get a metric of their own.
 fn as_given(surface: &mut Surface, pulse: &Pulse) -> Result<Joins, Stopped> {
-    let (mean, longest) = surface.edge_lengths();
+    let (mean, longest) = surface.edge_lengths(pulse)?;
     let floor = if mean > 0.0 { 1e-3 * mean } else { longest };
     let mut flat = 0_usize;
     let mut joins = Joins::new(surface.points.len(), surface.triangles.len());
@@ -173,7 +173,7 @@ fn as_given(surface: &mut Surface, pulse: &Pulse) -> Result<Joins, Stopped> {
 fn intrinsic(surface: &mut Surface, rims: Rims, layers: f64, pulse: &Pulse) -> Result<Joins, Stopped> {
     let cover = cover(surface, rims, pulse)?;
     let mut glued = cover.glued;
-    let opened = glued.mollify();
+    let opened = glued.mollify(pulse)?;
     let flips = glued.flip_to_delaunay(pulse)?;
     let notes = &mut surface.notes;
     notes.push(match rims {
@@ -199,14 +199,13 @@ fn intrinsic(surface: &mut Surface, rims: Rims, layers: f64, pulse: &Pulse) -> R
 }
 
 fn finish(surface: Surface, joins: Joins, choice: Choice, pulse: &Pulse) -> Result<Laplacian, Stopped> {
-    let surface_size = surface.triangles.len();
-    let (component, components) = surface.components();
+    let (component, components) = surface.components(pulse)?;
     let Surface { vertices, exponent, mut notes, .. } = surface;
     if components > 1 {
         notes.push(format!("{components} connected components: as many zeros"));
     }
-    pulse.beat(20 * surface_size)?;
     let matrix = joins.finish(choice, pulse)?;
     let total = matrix.total_mass();
+    pulse.beat(4 * matrix.rows.len())?;
     Ok(Laplacian { matrix, vertices, component, components, total, exponent, notes })
 }

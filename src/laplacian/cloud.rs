@@ -43,6 +43,7 @@ pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianEr
         return Err(LaplacianError::NoCloud { vertices: count });
     }
     let (points, exponent) = scaled(mesh, &vertices)?;
+    pulse.beat(10 * points.len())?;
     let triangles = triangles(&points, pulse)?;
     if triangles.is_empty() {
         return Err(LaplacianError::NoCloud { vertices: count });
@@ -56,9 +57,13 @@ pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianEr
     for (at, &point) in (0..).zip(&used) {
         place[point as usize] = at;
     }
+    pulse.beat(6 * triangles.len())?;
+    let triangles: Vec<_> =
+        triangles.into_iter().map(|triangle| triangle.map(|point| place[point as usize])).collect();
+    pulse.beat(6 * triangles.len())?;
     Ok(Surface {
         points: used.iter().map(|&point| points[point as usize]).collect(),
-        triangles: triangles.into_iter().map(|triangle| triangle.map(|point| place[point as usize])).collect(),
+        triangles,
         vertices: used.iter().map(|&point| vertices[point as usize]).collect(),
         exponent,
         notes,

@@ -5,7 +5,10 @@ use super::{
     surface::Surface,
 };
 use crate::{
-    mesh::vector::{cross, dot, sub, unit},
+    mesh::{
+        by_vertex::ByVertex,
+        vector::{cross, dot, sub, unit},
+    },
     watch::{Pulse, Stopped},
 };
 
@@ -37,22 +40,27 @@ type Side = (u32, u32, u32);
 /// When the watch cancels.
 pub(super) fn cover(surface: &Surface, rims: Rims, pulse: &Pulse) -> Result<Cover, Stopped> {
     let triangles = &surface.triangles;
-    let sides = sides(triangles, pulse)?;
+    let sides = sides(surface, pulse)?;
     let ascending = |side: u32| {
         let (triangle, at) = (triangles[(side / 3) as usize], (side % 3) as usize);
         triangle[(at + 1) % 3] < triangle[(at + 2) % 3]
     };
     let groups = || sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
-    let oriented = groups().all(|group| group.len() != 2 || ascending(group[0].2) != ascending(group[1].2));
-    if rims == Rims::Open && oriented {
-        let mut twins = vec![NONE; 3 * triangles.len()];
+    let mut oriented = rims == Rims::Open;
+    for group in groups().take_while(|_| rims == Rims::Open) {
+        pulse.beat(10 * group.len())?;
+        oriented &= group.len() != 2 || ascending(group[0].2) != ascending(group[1].2);
+    }
+    if oriented {
+        let mut twins = pulse.filled(NONE, 3 * triangles.len())?;
         for group in groups().filter(|group| group.len() == 2) {
+            pulse.beat(20)?;
             twins[group[0].2 as usize] = group[1].2;
             twins[group[1].2 as usize] = group[0].2;
         }
         return Ok(Cover { glued: glued(surface, 1, twins, pulse)?, sheets: 1 });
     }
-    let mut twins = vec![NONE; 6 * triangles.len()];
+    let mut twins = pulse.filled(NONE, 6 * triangles.len())?;
     // The side on the sheet that runs from the smaller to the greater vertex there, and the one on the other sheet.
     let front = |side: u32| on_sheet(side, !ascending(side));
     let back = |side: u32| on_sheet(side, ascending(side));
@@ -83,14 +91,19 @@ const fn on_sheet(side: u32, second: bool) -> u32 {
 }
 
 /// All sides by edge and triangle.
-fn sides(triangles: &[[u32; 3]], pulse: &Pulse) -> Result<Vec<Side>, Stopped> {
-    let mut sides: Vec<Side> = (0..)
-        .zip(triangles)
-        .flat_map(|(at, &[a, b, c])| [(b, c, 3 * at), (c, a, 3 * at + 1), (a, b, 3 * at + 2)])
-        .map(|(a, b, side)| (a.min(b), a.max(b), side))
-        .collect();
-    pulse.sort(&mut sides, &Ord::cmp)?;
-    Ok(sides)
+fn sides(surface: &Surface, pulse: &Pulse) -> Result<Vec<Side>, Stopped> {
+    let all = || {
+        (0..)
+            .zip(&surface.triangles)
+            .flat_map(|(at, &[a, b, c])| [(b, c, 3 * at), (c, a, 3 * at + 1), (a, b, 3 * at + 2)])
+            .map(|(a, b, side)| (a.min(b), (a.min(b), a.max(b), side)))
+    };
+    let mut sides = ByVertex::<Side>::new(surface.points.len(), all, pulse)?;
+    for list in sides.lists() {
+        list.sort_unstable();
+        pulse.beat(20 + 15 * list.len())?;
+    }
+    Ok(sides.into_items())
 }
 
 fn glued(surface: &Surface, sheets: usize, twins: Vec<u32>, pulse: &Pulse) -> Result<Glued, Stopped> {

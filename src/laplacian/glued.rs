@@ -43,19 +43,28 @@ pub(super) struct Flips {
 impl Glued {
     /// Lengthens all edges by the same, by just so much that every triangle inequality holds with room to spare;
     /// returns how much that is, nothing for a good mesh.
-    pub(super) fn mollify(&mut self) -> f64 {
-        let sum: f64 = self.lengths.iter().flatten().sum();
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn mollify(&mut self, pulse: &Pulse) -> Result<f64, Stopped> {
+        let mut sum = 0.0;
+        for lengths in &self.lengths {
+            lengths.iter().for_each(|length| sum += length);
+            pulse.beat(4)?;
+        }
         // Coordinates extend over one to two: where all triangles are points, any small length does.
         let mean = if sum > 0.0 { sum / (3 * self.lengths.len()) as f64 } else { 1.0 };
         let room = OPENING * mean;
         let mut short = 0.0_f64;
         for &[a, b, c] in &self.lengths {
             short = short.max(room + a - b - c).max(room + b - c - a).max(room + c - a - b);
+            pulse.beat(6)?;
         }
-        if short > 0.0 {
-            self.lengths.iter_mut().flatten().for_each(|length| *length += short);
+        for lengths in self.lengths.iter_mut().take_while(|_| short > 0.0) {
+            lengths.iter_mut().for_each(|length| *length += short);
+            pulse.beat(4)?;
         }
-        short
+        Ok(short)
     }
 
     /// Flips edges until all are Delaunay (the angles opposite of each sum to at most π).
@@ -69,7 +78,8 @@ impl Glued {
     /// When the watch cancels.
     pub(super) fn flip_to_delaunay(&mut self, pulse: &Pulse) -> Result<Flips, Stopped> {
         let mut queue: Vec<u32> = (0..self.twins.len() as u32).rev().collect();
-        let mut queued = vec![true; self.twins.len()];
+        pulse.beat(2 * queue.len())?;
+        let mut queued = pulse.filled(true, self.twins.len())?;
         let most = MOST_FLIPS * self.corners.len() + 1000;
         let mut count = 0;
         while let Some(side) = queue.pop() {
@@ -198,6 +208,10 @@ mod tests {
         Surface::of(mesh, false, &pulse).ok().map(|surface| cover(&surface, rims, &pulse).unwrap().glued)
     }
 
+    fn mollify(glued: &mut Glued) -> f64 {
+        glued.mollify(&Pulse::new(&Unwatched)).unwrap()
+    }
+
     fn flip(glued: &mut Glued) -> Flips {
         glued.flip_to_delaunay(&Pulse::new(&Unwatched)).unwrap()
     }
@@ -244,7 +258,7 @@ mod tests {
             vec![[0, 1, 2], [0, 2, 3]],
         );
         let mut glued = glue(&mesh, Rims::Open).unwrap();
-        assert_eq!(glued.mollify(), 0.0);
+        assert_eq!(mollify(&mut glued), 0.0);
         let before = area(&glued);
         assert_eq!(flip(&mut glued), Flips { count: 1, complete: true });
         assert_glued(&glued);
@@ -297,7 +311,7 @@ mod tests {
                 .collect();
             let mesh = sheet(&points, 6, cuts);
             let Some(mut glued) = glue(&mesh, if tufted { Rims::Tufted } else { Rims::Open }) else { return Ok(()) };
-            glued.mollify();
+            mollify(&mut glued);
             let before = area(&glued);
             prop_assert!(glued.elements().all(|(_, element)| element.area > 0.0));
             let flips = flip(&mut glued);

@@ -101,7 +101,7 @@ impl Symmetric {
             count[at + 1] += count[at];
         }
         let columns = count.clone();
-        let mut order = vec![(0_u32, 0_usize); columns[keep.len()]];
+        let mut order = pulse.filled((0_u32, 0_usize), columns[keep.len()])?;
         for &column in keep {
             for at in self.range(column as usize) {
                 let (low, high) = place(self.rows[at], column);
@@ -124,12 +124,11 @@ impl Symmetric {
             MassMatrix::Full(values) => MassMatrix::Full(order.iter().map(|&(_, at)| values[at]).collect()),
         };
         pulse.beat(5 * order.len())?;
-        Ok(Self {
-            columns,
-            rows: order.iter().map(|&(row, _)| row).collect(),
-            stiffness: order.iter().map(|&(_, at)| self.stiffness[at]).collect(),
-            mass,
-        })
+        let rows = order.iter().map(|&(row, _)| row).collect();
+        pulse.beat(2 * order.len())?;
+        let stiffness = order.iter().map(|&(_, at)| self.stiffness[at]).collect();
+        pulse.beat(5 * order.len())?;
+        Ok(Self { columns, rows, stiffness, mass })
     }
 
     /// Neighbours of every row as (offsets, indices): the off-diagonal pattern of both triangles.
@@ -158,8 +157,9 @@ impl Symmetric {
         for at in 0..n {
             offsets[at + 1] += offsets[at];
         }
+        pulse.beat(2 * n)?;
         let mut next = offsets.clone();
-        let mut neighbours = vec![0_u32; offsets[n]];
+        let mut neighbours = pulse.filled(0_u32, offsets[n])?;
         pairs(&mut |row, column| {
             neighbours[next[row]] = column as u32;
             next[row] += 1;

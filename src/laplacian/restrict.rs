@@ -36,7 +36,7 @@ pub(super) fn restrict(whole: Laplacian, out: &[bool], pulse: &Pulse) -> Result<
     let keep: Vec<u32> = (0..out.len() as u32).filter(|&row| !out[row as usize]).collect();
     let matrix = whole.matrix.select(&keep, pulse)?;
     let off_diagonal = matrix.entries().map(|(row, column, ..)| (row as u32, column as u32));
-    let (component, components) = components(keep.len(), off_diagonal);
+    let (component, components) = components(keep.len(), off_diagonal, pulse)?;
     notes.retain(|note| !note.ends_with("as many zeros"));
     notes.push(format!("{held_rows} boundary vertices are held at zero"));
     if components > 1 {

@@ -52,15 +52,20 @@ impl Surface {
         if weld {
             join(mesh, &mut triangles, &mut notes, pulse)?;
         }
+        pulse.beat(4 * triangles.len())?;
         let triangles = distinct(proper(triangles, &mut notes)?, &mut notes, pulse)?;
         let (vertices, triangles) = compact(mesh, triangles, weld, &mut notes);
         pulse.beat(10 * triangles.len())?;
         let (points, exponent) = scaled(mesh, &vertices)?;
+        pulse.beat(10 * points.len())?;
         Ok(Self { points, triangles, vertices, exponent, notes })
     }
 
     /// Mean and largest edge length over the triangles.
-    pub(super) fn edge_lengths(&self) -> (f64, f64) {
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn edge_lengths(&self, pulse: &Pulse) -> Result<(f64, f64), Stopped> {
         let mut sum = 0.0;
         let mut longest = 0.0_f64;
         for triangle in &self.triangles {
@@ -69,8 +74,9 @@ impl Surface {
                 sum += length;
                 longest = longest.max(length);
             }
+            pulse.beat(20)?;
         }
-        (sum / (3 * self.triangles.len()) as f64, longest)
+        Ok((sum / (3 * self.triangles.len()) as f64, longest))
     }
 
     /// The distance of two points.
@@ -79,8 +85,11 @@ impl Surface {
     }
 
     /// Connected components of the points through triangles, numbered by their first point, and how many.
-    pub(super) fn components(&self) -> (Vec<u32>, usize) {
-        components(self.points.len(), self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (a, c)]))
+    ///
+    /// # Errors
+    /// When the watch cancels.
+    pub(super) fn components(&self, pulse: &Pulse) -> Result<(Vec<u32>, usize), Stopped> {
+        components(self.points.len(), self.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (a, c)]), pulse)
     }
 }
 
@@ -155,10 +164,12 @@ fn distinct(mut triangles: Vec<[u32; 3]>, notes: &mut Vec<String>, pulse: &Pulse
             (sorted, at)
         })
         .collect();
+    pulse.beat(10 * order.len())?;
     pulse.sort(&mut order, &Ord::cmp)?;
     let mut again = vec![false; triangles.len()];
     for pair in order.windows(2) {
         again[pair[1].1 as usize] = pair[0].0 == pair[1].0;
+        pulse.beat(6)?;
     }
     let repeated = again.iter().filter(|&&is| is).count();
     if repeated > 0 {
@@ -223,7 +234,14 @@ pub(super) fn scaled(mesh: &Mesh, vertices: &[u32]) -> Result<(Vec<[f64; 3]>, i3
 }
 
 /// Connected components of a graph, numbered by their first item, and how many.
-pub(super) fn components(count: usize, edges: impl Iterator<Item = (u32, u32)>) -> (Vec<u32>, usize) {
+///
+/// # Errors
+/// When the watch cancels.
+pub(super) fn components(
+    count: usize,
+    edges: impl Iterator<Item = (u32, u32)>,
+    pulse: &Pulse,
+) -> Result<(Vec<u32>, usize), Stopped> {
     let mut leader: Vec<u32> = (0..count as u32).collect();
     let find = |leader: &mut Vec<u32>, mut at: u32| {
         while leader[at as usize] != at {
@@ -235,20 +253,21 @@ pub(super) fn components(count: usize, edges: impl Iterator<Item = (u32, u32)>) 
     for (a, b) in edges {
         let (x, y) = (find(&mut leader, a), find(&mut leader, b));
         leader[x.max(y) as usize] = x.min(y);
+        pulse.beat(10)?;
     }
     let mut number = vec![u32::MAX; count];
     let mut next = 0;
-    let component = (0..count as u32)
-        .map(|item| {
-            let root = find(&mut leader, item) as usize;
-            if number[root] == u32::MAX {
-                number[root] = next;
-                next += 1;
-            }
-            number[root]
-        })
-        .collect();
-    (component, next as usize)
+    let mut component = Vec::with_capacity(count);
+    for item in 0..count as u32 {
+        let root = find(&mut leader, item) as usize;
+        if number[root] == u32::MAX {
+            number[root] = next;
+            next += 1;
+        }
+        component.push(number[root]);
+        pulse.beat(6)?;
+    }
+    Ok((component, next as usize))
 }
 
 #[cfg(test)]

@@ -33,7 +33,10 @@ impl<T: Copy> ByVertex<T> {
         for a in 0..vertices {
             first[a + 1] += first[a];
         }
-        let mut places = some.map_or_else(Vec::new, |some| vec![some; count]);
+        let mut places = match some {
+            Some(some) => pulse.filled(some, count)?,
+            None => Vec::new(),
+        };
         items().try_for_each(|(a, item)| {
             let at = &mut first[a as usize + 1];
             places[*at as usize] = item;

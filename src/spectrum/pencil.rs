@@ -67,7 +67,7 @@ impl Pencil {
         let mass = match &matrix.mass {
             MassMatrix::Unit => Product::Unit,
             MassMatrix::Diagonal(values) => Product::Diagonal(values.clone()),
-            MassMatrix::Full(values) => by_rows(&matrix, values),
+            MassMatrix::Full(values) => by_rows(&matrix, values, pulse)?,
         };
         pulse.beat(10 * matrix.rows.len())?;
         let kernel = has_kernel(&matrix);
@@ -95,10 +95,11 @@ pub(super) fn has_kernel(matrix: &Symmetric) -> bool {
     sums.iter().all(|(sum, size)| sum.abs() <= 1e-12 * size)
 }
 
-fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {
+fn by_rows(matrix: &Symmetric, values: &[f64], pulse: &Pulse) -> Result<Product, Stopped> {
     let n = matrix.order();
     let mut counts = vec![0_u32; n];
     for column in 0..n {
+        pulse.beat(20)?;
         for at in matrix.range(column) {
             let row = matrix.rows[at] as usize;
             counts[row] += 1;
@@ -111,6 +112,7 @@ fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {
     let mut entries = Vec::new();
     for (row, count) in counts.iter_mut().enumerate() {
         starts.push(entries.len() as u32);
+        pulse.beat(30)?;
         let none = Entries { columns: [row as u32; WIDTH], values: [0.0; WIDTH] };
         entries.extend(std::iter::repeat_n(none, count.div_ceil(WIDTH as u32) as usize));
         *count = 0;
@@ -125,6 +127,7 @@ fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {
     };
     // By columns of the lower triangle: each row receives its left part in order, then diagonal and right part.
     for column in 0..n {
+        pulse.beat(40)?;
         for at in matrix.range(column) {
             let row = matrix.rows[at] as usize;
             put(row, column, values[at]);
@@ -133,5 +136,5 @@ fn by_rows(matrix: &Symmetric, values: &[f64]) -> Product {
             }
         }
     }
-    Product::Rows(starts, entries)
+    Ok(Product::Rows(starts, entries))
 }

@@ -12,7 +12,7 @@ pub(super) enum Stop {
     Pivot,
 }
 
-/// Asks the watch once per so many multiplications: about every millisecond.
+/// Asks the watch once per so many multiplications: about every millisecond, where they wait for memory.
 pub(super) struct Poll<'a> {
     watch: &'a dyn Watch,
     spent: usize,
@@ -26,7 +26,7 @@ impl std::fmt::Debug for Poll<'_> {
 }
 
 impl<'a> Poll<'a> {
-    const BUDGET: usize = 1 << 23;
+    const BUDGET: usize = 1 << 21;
 
     pub(super) fn new(watch: &'a dyn Watch) -> Self {
         Self { watch, spent: 0, meter: Meter::start() }

@@ -13,6 +13,9 @@ use crate::{
 /// The largest entry that M may have: errors of the counts and solves grow with it.
 const GROWTH: f64 = 1e5;
 
+/// Numbers that are written for the first time between two looks at the watch.
+const PAGES: usize = 1 << 19;
+
 /// L − σB = M D Mᵀ with a unit lower triangular M, and room to do it again for another shift.
 #[derive(Debug, Default)]
 pub(in crate::spectrum) struct Factor {
@@ -45,7 +48,14 @@ impl Factor {
         poll: &mut Poll,
     ) -> Result<usize, Stop> {
         let size = symbolic.front.next_multiple_of(WIDTH);
-        self.values.resize(symbolic.values(), 0.0);
+        // New memory page by page.
+        while self.values.len() < symbolic.values() {
+            let next = (self.values.len() + PAGES).min(symbolic.values());
+            self.values.reserve_exact(symbolic.values() - self.values.len());
+            self.values.resize(next, 0.0);
+            poll.spend(2 * PAGES)?;
+        }
+        self.values.truncate(symbolic.values());
         self.inverse.resize(matrix.order(), 0.0);
         self.order.resize(matrix.order(), 0);
         self.moved.resize(symbolic.len(), false);

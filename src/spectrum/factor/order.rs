@@ -40,6 +40,7 @@ pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Op
             }
         }
     };
+    pulse.ask()?;
     let tree = elimination_tree(n, &earlier, pulse)?;
     let counts = column_counts(n, &tree, &earlier, pulse)?;
     let post = postorder(&tree, &counts, pulse)?;
@@ -130,6 +131,7 @@ fn postorder(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>, 
     let mut next = vec![ROOT; n];
     let mut roots = Vec::new();
     for &at in &by_weight {
+        pulse.beat(20)?;
         match parent[at as usize] {
             ROOT => roots.push(at),
             above => {
@@ -147,6 +149,7 @@ fn postorder(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>, 
             if child == ROOT {
                 stack.pop();
                 post.push(at);
+                pulse.beat(30)?;
                 continue;
             }
             first[at as usize] = ROOT;

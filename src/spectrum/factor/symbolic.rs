@@ -73,8 +73,7 @@ impl Symbolic {
         };
         let tree = elimination_tree(n, &earlier, pulse)?;
         let counts = column_counts(n, &tree, &earlier, pulse)?;
-        let begin = supernodes(&tree, &counts);
-        pulse.beat(10 * n)?;
+        let begin = supernodes(&tree, &counts, pulse)?;
         let (row_start, rows, parent) = structure(matrix, &begin, pulse)?;
         Self::finish(matrix, begin, row_start, rows, &parent, pulse)
     }
@@ -122,6 +121,7 @@ impl Symbolic {
         // Children of a supernode precede it, so one pass over the parents with a list of children each suffices.
         let mut lists: Vec<Vec<u32>> = vec![Vec::new(); count];
         for (at, &above) in parent.iter().enumerate() {
+            pulse.beat(30)?;
             if above != ROOT {
                 lists[above as usize].push(at as u32);
                 children[above as usize] += 1;
@@ -153,6 +153,7 @@ impl Symbolic {
         let (mut front, mut stack, mut height) = (0, 0, 0);
         let mut waiting: Vec<usize> = Vec::new();
         for at in 0..count {
+            pulse.beat(20)?;
             let width = (begin[at + 1] - begin[at]) as usize;
             let below = row_start[at + 1] - row_start[at];
             value_start[at + 1] = value_start[at] + width * (width - 1) / 2 + width * below;
@@ -165,7 +166,7 @@ impl Symbolic {
             height += below * (below + 1) / 2;
             stack = stack.max(height);
         }
-        let (pieces, piece_rows) = pieces(&begin, &row_start, &rows, &value_start);
+        let (pieces, piece_rows) = pieces(&begin, &row_start, &rows, &value_start, pulse)?;
         // While a front is assembled its children still wait, and its own update is pushed after they are gone.
         Ok(Self {
             begin,
@@ -185,7 +186,16 @@ impl Symbolic {
 }
 
 /// Cuts the supernodes into pieces; also lists their rows.
-fn pieces(begin: &[u32], row_start: &[usize], rows: &[u32], value_start: &[usize]) -> (Vec<Piece>, Vec<u32>) {
+///
+/// # Errors
+/// When the watch cancels.
+fn pieces(
+    begin: &[u32],
+    row_start: &[usize],
+    rows: &[u32],
+    value_start: &[usize],
+    pulse: &Pulse,
+) -> Result<(Vec<Piece>, Vec<u32>), Stopped> {
     let (mut pieces, mut list) = (Vec::new(), Vec::new());
     for node in 0..begin.len() - 1 {
         let mut values = value_start[node];
@@ -204,16 +214,20 @@ fn pieces(begin: &[u32], row_start: &[usize], rows: &[u32], value_start: &[usize
                 node: node as u32,
                 first: first == begin[node],
             });
+            pulse.beat(20 + list.len() - start as usize)?;
             let width = (end - first) as usize;
             values += width * (width - 1) / 2 + width * (list.len() - start as usize);
         }
     }
-    (pieces, list)
+    Ok((pieces, list))
 }
 
 /// Columns with nested patterns, then merged with their parents while few zeros are stored for it. Of small supernodes
 /// many may be: a solve spends more on coming to another supernode than on some fifty zeros.
-fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
+///
+/// # Errors
+/// When the watch cancels.
+fn supernodes(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     struct Node {
         begin: usize,
         end: usize,
@@ -231,6 +245,7 @@ fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
             column += 1;
         }
         column += 1;
+        pulse.beat(20 * (column - begin))?;
         let mut node = Node { begin, end: column, below: counts[column - 1] as usize - 1, zeros: 0 };
         while let Some(child) = stack.last() {
             let above = parent[child.end - 1];
@@ -258,7 +273,7 @@ fn supernodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
         }
         stack.push(node);
     }
-    stack.iter().map(|node| node.begin as u32).chain([n as u32]).collect()
+    Ok(stack.iter().map(|node| node.begin as u32).chain([n as u32]).collect())
 }
 
 /// Where the rows below every supernode begin, these rows, and every supernode's parent.

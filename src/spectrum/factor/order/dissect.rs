@@ -51,8 +51,9 @@ fn order_by(largest: usize, offsets: &[usize], neighbours: &[u32], pulse: &Pulse
         } else if part.len() <= largest || kind == Kind::Whole {
             pulse.ask()?;
             // Ascending, so that the part's lists of neighbours are.
-            part.sort_unstable();
+            pulse.sort(&mut part, &Ord::cmp)?;
             let (offsets, neighbours) = graph.part(&part, &mut level);
+            pulse.ask()?;
             let Some(inner) = minimum_degree(part.len(), &offsets, &neighbours) else { return Ok(None) };
             order.extend(inner.into_iter().map(|at| part[at as usize]));
             pulse.ask()?;
@@ -128,7 +129,9 @@ impl Graph<'_> {
             }
             start = reached.last().copied().unwrap_or(start);
         }
+        pulse.ask()?;
         let sides = (reached.len() == part.len()).then(|| self.cut_level(&reached, level));
+        pulse.ask()?;
         for &row in part {
             level[row as usize] = OUT;
         }
