@@ -127,7 +127,8 @@ pub struct Spectrum {
     /// 1ᵀB1 of the whole surface: the area for finite elements, the number of vertices in use for the cotangent
     /// operator.
     pub measure: f64,
-    /// How many eigenvalues are zero: the number of connected components that no boundary condition holds.
+    /// How many eigenvalues are zero: the number of connected components that no boundary condition holds, and of parts
+    /// that hang on by weights of zero, such as the tip of a triangle a million million times as long as wide.
     pub zeros: usize,
     /// What was done to the mesh, one line each.
     pub notes: Vec<String>,

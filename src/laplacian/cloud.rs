@@ -58,8 +58,7 @@ pub(super) fn surface(mesh: &Mesh, pulse: &Pulse) -> Result<Surface, LaplacianEr
         place[point as usize] = at;
     }
     pulse.beat(6 * triangles.len())?;
-    let triangles: Vec<_> =
-        triangles.into_iter().map(|triangle| triangle.map(|point| place[point as usize])).collect();
+    let triangles: Vec<_> = triangles.into_iter().map(|triangle| triangle.map(|point| place[point as usize])).collect();
     pulse.beat(6 * triangles.len())?;
     Ok(Surface {
         points: used.iter().map(|&point| points[point as usize]).collect(),

@@ -49,7 +49,9 @@ impl Glued {
     pub(super) fn mollify(&mut self, pulse: &Pulse) -> Result<f64, Stopped> {
         let mut sum = 0.0;
         for lengths in &self.lengths {
-            lengths.iter().for_each(|length| sum += length);
+            for length in lengths {
+                sum += length;
+            }
             pulse.beat(4)?;
         }
         // Coordinates extend over one to two: where all triangles are points, any small length does.
@@ -61,7 +63,9 @@ impl Glued {
             pulse.beat(6)?;
         }
         for lengths in self.lengths.iter_mut().take_while(|_| short > 0.0) {
-            lengths.iter_mut().for_each(|length| *length += short);
+            for length in lengths {
+                *length += short;
+            }
             pulse.beat(4)?;
         }
         Ok(short)

@@ -335,11 +335,11 @@ impl Piece {
     fn finish(&self, shift: &Shift, mut found: Vec<Found>) -> Result<Band, Advance> {
         let &Shift { place, lower, upper, below, above, .. } = shift;
         let failed = Advance::Uncertified { at: upper * self.unit };
-        let zeros = usize::from(lower == 0.0 && self.pencil.kernel);
-        if zeros == 1 {
-            // It is the smallest eigenvalue, and every other one is above it.
-            let Some(zero) = found.first_mut() else { return Err(failed) };
-            if zero.value.abs() > 1e-7 * upper {
+        let zeros = if lower == 0.0 { self.pencil.kernel } else { 0 };
+        // They are the smallest eigenvalues, and every other one is above them.
+        let Some(kernel) = found.get_mut(..zeros) else { return Err(failed) };
+        for zero in kernel {
+            if zero.value.abs() > zero.near.max(1e-7 * upper) {
                 return Err(failed);
             }
             *zero = Found::exactly(0.0, 0.0);

@@ -15,8 +15,8 @@ pub(super) struct Pencil {
     pub matrix: Symmetric,
     pub symbolic: Symbolic,
     pub mass: Product,
-    /// Whether the constants are in the kernel of L.
-    pub kernel: bool,
+    /// The dimension of the kernel of L.
+    pub kernel: usize,
 }
 
 /// B by rows, for products with blocks.
@@ -70,7 +70,7 @@ impl Pencil {
             MassMatrix::Full(values) => by_rows(&matrix, values, pulse)?,
         };
         pulse.beat(10 * matrix.rows.len())?;
-        let kernel = has_kernel(&matrix);
+        let kernel = free_parts(&matrix).count;
         Ok(Self { matrix, symbolic, mass, kernel })
     }
 
@@ -80,19 +80,64 @@ impl Pencil {
     }
 }
 
-/// Whether the rows of L sum to zero, but for rounding. The L of a connected piece of a surface has the constants as
-/// its kernel, or none where a boundary condition holds the piece: then rows beside the held vertices miss an entry.
-pub(super) fn has_kernel(matrix: &Symmetric) -> bool {
-    let mut sums = vec![(0.0, 0.0_f64); matrix.order()];
+/// The parts of a connected piece that nothing holds, each with its constants in the kernel of L.
+#[derive(Debug)]
+pub(super) struct FreeParts {
+    /// The part of each row, or [`HELD`](Self::HELD).
+    pub of: Vec<u32>,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl FreeParts {
+    /// In no such part.
+    pub(super) const HELD: u32 = u32::MAX;
+}
+
+/// Where the rows of L sum to zero, but for rounding. Usually that is the whole of a piece, or nothing where a boundary
+/// condition holds it: then rows beside the held vertices miss an entry. But the tip of a triangle that is a million
+/// million times as long as it is wide may hang on by weights that are zero in double precision.
+pub(super) fn free_parts(matrix: &Symmetric) -> FreeParts {
+    let n = matrix.order();
+    let mut sums = vec![(0.0, 0.0_f64, 0_u32); n];
+    let mut leader: Vec<u32> = (0..n as u32).collect();
+    let find = |leader: &mut [u32], mut at: u32| {
+        while leader[at as usize] != at {
+            leader[at as usize] = leader[leader[at as usize] as usize];
+            at = leader[at as usize];
+        }
+        at
+    };
     for (row, column, l, _) in matrix.entries() {
-        let add = |(sum, size): &mut (f64, f64)| (*sum, *size) = (*sum + l, size.max(l.abs()));
+        let add = |(sum, size, count): &mut (f64, f64, u32)| {
+            (*sum, *size, *count) = (*sum + l, *size + l.abs(), *count + 1);
+        };
         add(&mut sums[row]);
         if row != column {
             add(&mut sums[column]);
+            if l != 0.0 {
+                let (a, b) = (find(&mut leader, row as u32), find(&mut leader, column as u32));
+                leader[a.max(b) as usize] = a.min(b);
+            }
         }
     }
-    // Weights of both signs, large where triangles are flat, cancel in the diagonal entry as well as here.
-    sums.iter().all(|(sum, size)| sum.abs() <= 1e-12 * size)
+    // The diagonal entry was the sum of the others, in some order.
+    let held = |&(sum, size, count): &(f64, f64, u32)| sum.abs() > 2.0 * f64::from(count) * f64::EPSILON * size;
+    let mut of = vec![0; n];
+    for (row, _) in sums.iter().enumerate().filter(|(_, sums)| held(sums)) {
+        of[find(&mut leader, row as u32) as usize] = FreeParts::HELD;
+    }
+    let mut count = 0;
+    for row in 0..n {
+        // The first of its part has the smallest number, and its part is known.
+        let first = find(&mut leader, row as u32) as usize;
+        if first == row && of[row] != FreeParts::HELD {
+            of[row] = count;
+            count += 1;
+        }
+        of[row] = of[first];
+    }
+    FreeParts { of, count: count as usize }
 }
 
 fn by_rows(matrix: &Symmetric, values: &[f64], pulse: &Pulse) -> Result<Product, Stopped> {

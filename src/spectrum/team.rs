@@ -213,9 +213,9 @@ impl Team {
         self.pieces.iter().map(|piece| piece.pencil.order()).max().unwrap_or(0)
     }
 
-    /// How many pieces have a kernel.
+    /// The dimensions of the pieces' kernels.
     pub(super) fn kernels(&self) -> usize {
-        self.pieces.iter().filter(|piece| piece.pencil.kernel).count()
+        self.pieces.iter().map(|piece| piece.pencil.kernel).sum()
     }
 
     /// The bands of the answer, once they are there. The watch learns how many eigenvalues are certified so far, and

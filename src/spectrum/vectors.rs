@@ -15,7 +15,7 @@ use super::{
     krylov::{Basis, Krylov, Ritz},
     lanes::{Buffer, WIDTH},
     part::Tools,
-    pencil::{Pencil, has_kernel},
+    pencil::{FreeParts, Pencil, free_parts},
     poll::{Poll, Stop},
     solve::pieces,
     timings::Cost,
@@ -214,7 +214,7 @@ fn of_part(
                 continue;
             }
             let pairs = if first < band.zeros {
-                vec![constant(&pencil.matrix)]
+                vec![(true, constant(&pencil.matrix, first))]
             } else {
                 window(&pencil, &values, first..end, spacing, tools, poll)?
             };
@@ -245,10 +245,40 @@ fn windows(values: &[f64], zeros: usize, spacing: f64) -> Vec<(usize, usize)> {
     cut
 }
 
-/// The kernel of a connected piece that nothing holds.
-fn constant(matrix: &Symmetric) -> (bool, Vec<f64>) {
-    debug_assert!(has_kernel(matrix));
-    (true, vec![1.0 / matrix.total_mass().sqrt(); matrix.order()])
+/// A vector of the kernel of a connected piece: constant on each of its free parts up to the one with that number, with
+/// xᵀBx = 1 and orthogonal to those of the parts before.
+fn constant(matrix: &Symmetric, number: usize) -> Vec<f64> {
+    let FreeParts { of, count } = free_parts(matrix);
+    if count <= 1 {
+        return vec![1.0 / matrix.total_mass().sqrt(); matrix.order()];
+    }
+    // B between the constants of the parts, and Cholesky's decomposition of it by the Gram–Schmidt process.
+    let place = |row: usize| (of[row] != FreeParts::HELD).then_some(of[row] as usize);
+    let mut gram = vec![0.0; count * count];
+    for (row, column, _, mass) in matrix.entries() {
+        if let (Some(a), Some(b)) = (place(row), place(column)) {
+            gram[a * count + b] += mass;
+            gram[b * count + a] += if row == column { 0.0 } else { mass };
+        }
+    }
+    let inner = |x: &[f64], y: &[f64]| -> f64 {
+        (0..count).flat_map(|a| (0..count).map(move |b| (a, b))).map(|(a, b)| x[a] * gram[a * count + b] * y[b]).sum()
+    };
+    let mut all: Vec<Vec<f64>> = Vec::new();
+    for at in 0..=number.min(count - 1) {
+        let mut x: Vec<f64> = (0..count).map(|part| f64::from(u8::from(part == at))).collect();
+        for other in &all {
+            let along = inner(&x, other);
+            x.iter_mut().zip(other).for_each(|(x, other)| *x -= along * other);
+        }
+        let norm = inner(&x, &x).sqrt();
+        for x in &mut x {
+            *x /= norm;
+        }
+        all.push(x);
+    }
+    let last = all.pop().unwrap_or_default();
+    (0..of.len()).map(|row| place(row).map_or(0.0, |part| last[part])).collect()
 }
 
 /// Poles for a window, best first: in the middle of wide gaps near its centre.

@@ -192,7 +192,12 @@ fn operators_and_spectra() {
 /// Masses that differ by many orders, so that most eigenvalues hardly differ beside the shift.
 #[test]
 fn graded_meshes_of_which_eigenvalues_were_once_wrong_or_not_certified() {
-    for case in [5_000_345, 5_001_704, 5_002_750, 5_003_995, 6_286_382, 20_191_592] {
+    let sparse = [5_000_345, 5_001_704, 5_002_750, 5_003_995, 6_286_382, 20_191_592];
+    // Tips of triangles that hang on by weights of zero, and a zero that is off by more than a ten-millionth.
+    let zeros = [970_003_912, 970_005_545, 970_025_972, 970_027_607, 970_032_601, 970_044_235];
+    // Small pieces: one that is held by a ten-million-millionth of its weights, others with eigenvalues of all orders.
+    let dense = [970_048_747, 970_006_294, 970_006_801, 970_007_400, 970_007_435, 970_018_229, 970_022_913];
+    for case in sparse.into_iter().chain(zeros).chain(dense) {
         assert_eq!(solved(&mut runner(case)), "certified", "case {case}");
     }
 }
@@ -237,7 +242,8 @@ fn solved(runner: &mut TestRunner) -> &'static str {
     let laplacian = assemble(&mesh, choice).unwrap();
     assert!(laplacian.matrix.entries().all(|entry| entry.2.is_finite() && entry.3.is_finite()));
     if choice.boundary == Boundary::Neumann {
-        assert_eq!(spectrum.zeros, laplacian.components);
+        // Parts of a component may hang together by weights that are zero in double precision.
+        assert!(spectrum.zeros >= laplacian.components);
     }
     // The sum of all eigenvalues is the trace of B⁻¹L.
     let diagonal = choice.operator == Operator::Cot || choice.mass == Mass::Lumped;
