@@ -35,12 +35,14 @@ use crate::{
 use self::timings::Meter;
 
 mod band;
+mod band_reduction;
 mod block;
 mod crew;
 mod dense;
 mod factor;
 #[cfg(test)]
 mod faults;
+mod implicit_ql;
 mod krylov;
 mod lanes;
 mod normalise;

@@ -10,6 +10,7 @@ use self::{
     projected::{cholesky, product, projected},
 };
 use super::{
+    band_reduction::block_eigen,
     block::{Combine, Dots, Multiply, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
@@ -351,16 +352,21 @@ impl<'a> Krylov<'a> {
             return None;
         }
         let blocks = self.alpha.len();
-        let n = blocks * WIDTH;
-        let Scratch { small, tails, .. } = &mut *self.scratch;
-        projected(&self.alpha, &self.beta, &self.lost, small);
-        tails.clear();
-        tails.resize(n, [0.0; WIDTH]);
-        for at in 0..WIDTH {
-            tails[n - WIDTH + at][at] = 1.0;
-        }
         poll.charge(Cost::Rest);
-        let theta = eigen(small, n, tails)?;
+        let Scratch { small, tails, .. } = &mut *self.scratch;
+        let theta = match self.basis {
+            Basis::Single => block_eigen(&self.alpha, &self.beta, tails)?,
+            Basis::Double(_) => {
+                let n = blocks * WIDTH;
+                projected(&self.alpha, &self.beta, &self.lost, small);
+                tails.clear();
+                tails.resize(n, [0.0; WIDTH]);
+                for at in 0..WIDTH {
+                    tails[n - WIDTH + at][at] = 1.0;
+                }
+                eigen(small, n, tails)?
+            }
+        };
         poll.charge(Cost::Dense);
         let last = &self.beta[blocks - 1];
         let mut found: Vec<Ritz> = theta

@@ -72,6 +72,8 @@ pub(super) trait Lanes: Copy {
     fn sub(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
     fn add(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
     fn mul(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
+    /// The sums of the eight numbers in each, added up as by [`sum`].
+    fn sums(self, values: [Self::Reg; WIDTH]) -> Self::Reg;
     fn wide(self, values: &[f32; 16]) -> Self::Wide;
     fn wide_splat(self, value: f32) -> Self::Wide;
     fn wide_row(self, value: Self::Wide) -> [f32; 16];
@@ -88,6 +90,12 @@ pub(super) trait Lanes: Copy {
     fn zero(self) -> Self::Reg {
         self.splat(0.0)
     }
+}
+
+/// The sum of eight numbers: of pairs, then of pairs of those.
+#[inline(always)]
+pub(super) fn sum([a, b, c, d, e, f, g, h]: &Row) -> f64 {
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
 /// Work that is compiled once for each instruction set. Implementations of `run` must be `#[inline(always)]`, as must
@@ -161,6 +169,13 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn add(self, a: __m512d, b: __m512d) -> __m512d {
         self.0.avx512f._mm512_add_pd(a, b)
+    }
+    #[inline(always)]
+    fn sums(self, [a, b, c, d, e, f, g, h]: [__m512d; WIDTH]) -> __m512d {
+        let avx = self.0.avx512f;
+        let twos = |x, y| self.add(avx._mm512_unpacklo_pd(x, y), avx._mm512_unpackhi_pd(x, y));
+        let fours = |x, y| self.add(avx._mm512_shuffle_f64x2::<0x88>(x, y), avx._mm512_shuffle_f64x2::<0xdd>(x, y));
+        fours(fours(twos(a, b), twos(c, d)), fours(twos(e, f), twos(g, h)))
     }
     #[inline(always)]
     fn wide(self, values: &[f32; 16]) -> __m512 {
@@ -243,6 +258,16 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn add(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         [self.0.avx._mm256_add_pd(a[0], b[0]), self.0.avx._mm256_add_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn sums(self, values: [[__m256d; 2]; WIDTH]) -> [__m256d; 2] {
+        let avx = self.0.avx;
+        let four = |at: usize, half: usize| {
+            let twos = |at: usize| avx._mm256_hadd_pd(values[at][half], values[at + 1][half]);
+            let (x, y) = (twos(at), twos(at + 2));
+            avx._mm256_add_pd(avx._mm256_permute2f128_pd::<0x20>(x, y), avx._mm256_permute2f128_pd::<0x31>(x, y))
+        };
+        [0, 4].map(|at| avx._mm256_add_pd(four(at, 0), four(at, 1)))
     }
     #[inline(always)]
     fn wide(self, values: &[f32; 16]) -> [__m256; 2] {
@@ -359,6 +384,10 @@ impl Lanes for Plain {
     #[inline(always)]
     fn add(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
         std::array::from_fn(|at| a[at] + b[at])
+    }
+    #[inline(always)]
+    fn sums(self, values: [[f64; WIDTH]; WIDTH]) -> [f64; WIDTH] {
+        values.map(|values| sum(&values))
     }
     #[inline(always)]
     fn wide(self, values: &[f32; 16]) -> [f32; 16] {

@@ -1,12 +1,15 @@
 //! Dense symmetric eigenproblems of at most a few hundred rows.
 //!
-//! Householder reduction to tridiagonal form and the implicit QL iteration (Wilkinson and Reinsch 1971), with the
-//! transformations applied to as many rows as are asked for: a Lanczos process needs the last eight of the
-//! eigenvectors, not all of them.
+//! Householder reduction to tridiagonal form (Wilkinson and Reinsch 1971) and the [QL iteration](super::implicit_ql).
+//! What a Lanczos process needs of its projected operator, which is banded, is cheaper: see
+//! [`band_reduction`](super::band_reduction).
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
-use super::lanes::{Kernel, Lanes, Row, WIDTH, dispatch};
+use super::{
+    implicit_ql::ImplicitQl,
+    lanes::{Kernel, Lanes, Row, WIDTH, dispatch},
+};
 
 /// Eigenvalues of the symmetric matrix `a` (n × n, both triangles), in no particular order, or `None` when the
 /// iteration does not converge (then `a` was not finite).
@@ -21,8 +24,7 @@ pub(super) fn eigen(a: &[f64], n: usize, vectors: &mut [Row]) -> Option<Vec<f64>
     let mut beside = vec![0.0; n];
     let per = vectors.len() / n;
     dispatch(Tridiagonal { a, vectors, per, diagonal: &mut diagonal, beside: &mut beside });
-    let done = dispatch(Ql { vectors, per, diagonal: &mut diagonal, beside: &mut beside });
-    (done && diagonal.iter().all(|value| value.is_finite())).then_some(diagonal)
+    dispatch(ImplicitQl { vectors, per, diagonal: &mut diagonal, beside: &mut beside }).then_some(diagonal)
 }
 
 struct Tridiagonal<'a> {
@@ -86,7 +88,8 @@ impl Kernel for Tridiagonal<'_> {
                 pass::<L, 1>(lanes, &mut rows[at * width..], [&v, &p, &next], &mut product, at, from);
             }
             product.as_flattened_mut()[..first].fill(0.0);
-            let shift = 0.5 * tau * tau * inner(lanes, &next, &product);
+            // In this order, because τ² may overflow.
+            let shift = 0.5 * tau * (tau * inner(lanes, &next, &product));
             for (p, (product, v)) in p.iter_mut().zip(product.iter().zip(&next)) {
                 let scaled = lanes.mul(lanes.load(product), lanes.splat(tau));
                 *p = lanes.row(lanes.sub_mul(scaled, lanes.load(v), lanes.splat(shift)));
@@ -148,83 +151,6 @@ fn inner<L: Lanes>(lanes: L, x: &[Row], y: &[Row]) -> f64 {
         sum = lanes.add_mul(sum, lanes.load(x), lanes.load(y));
     }
     lanes.row(sum).iter().sum()
-}
-
-struct Ql<'a> {
-    vectors: &'a mut [Row],
-    per: usize,
-    diagonal: &'a mut [f64],
-    /// Subdiagonal in 0..n−1.
-    beside: &'a mut [f64],
-}
-
-impl Kernel for Ql<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> bool {
-        let Self { vectors, per, diagonal: d, beside: e } = self;
-        let n = d.len();
-        e[n - 1] = 0.0;
-        for low in 0..n {
-            let mut rounds = 0;
-            loop {
-                let mut high = low;
-                while high + 1 < n {
-                    let scale = d[high].abs() + d[high + 1].abs();
-                    if e[high].abs() <= f64::EPSILON * scale {
-                        break;
-                    }
-                    high += 1;
-                }
-                if high == low {
-                    break;
-                }
-                rounds += 1;
-                if rounds > 60 {
-                    return false;
-                }
-                let mut g = (d[low + 1] - d[low]) / (2.0 * e[low]);
-                let r = g.hypot(1.0);
-                g = d[high] - d[low] + e[low] / (g + r.copysign(g));
-                let (mut sine, mut cosine, mut p) = (1.0, 1.0, 0.0);
-                let mut broke = false;
-                for at in (low..high).rev() {
-                    let f = sine * e[at];
-                    let b = cosine * e[at];
-                    let r = (f * f + g * g).sqrt();
-                    e[at + 1] = r;
-                    if r == 0.0 {
-                        d[at + 1] -= p;
-                        e[high] = 0.0;
-                        broke = true;
-                        break;
-                    }
-                    sine = f / r;
-                    cosine = g / r;
-                    g = d[at + 1] - p;
-                    let r = (d[at] - g) * sine + 2.0 * cosine * b;
-                    p = sine * r;
-                    d[at + 1] = g + p;
-                    g = cosine * r - b;
-                    let (s, c) = (lanes.splat(sine), lanes.splat(cosine));
-                    let (left, right) = vectors[at * per..(at + 2) * per].split_at_mut(per);
-                    for (left, right) in left.iter_mut().zip(right) {
-                        let (x, y) = (lanes.load(left), lanes.load(right));
-                        *right = lanes.row(lanes.add_mul(lanes.mul(c, y), s, x));
-                        *left = lanes.row(lanes.sub_mul(lanes.mul(c, x), s, y));
-                    }
-                }
-                if broke {
-                    continue;
-                }
-                d[low] -= p;
-                e[low] = g;
-                e[high] = 0.0;
-            }
-        }
-        true
-    }
 }
 
 /// The unit matrix as the rows that [`eigen`] takes: all rows of the eigenvectors are wanted.

@@ -1,0 +1,499 @@
+//! Eigenvalues of symmetric block tridiagonal matrices, by a reduction that keeps the band.
+//!
+//! A sweep of QR decompositions makes the blocks below the diagonal upper triangular, so that eight entries are left
+//! below each diagonal entry. Then column after column is reduced to one of them by a Householder reflection of eight
+//! rows, and the bulge that it makes is chased along the band by further ones (Schwarz 1968, *Tridiagonalization of a
+//! symmetric band matrix*, there with rotations; Murata and Horikoshi 1975; Lang 1993, *A parallel algorithm for
+//! reducing symmetric banded matrices to tridiagonal form*). Only the first column of a bulge is reduced, the others
+//! wait for the next columns' turn. That is 12 n² rows of eight operations in place of n³ / 8.
+//!
+//! The matrix is turned over first, its last row becoming the first. What is wanted of the eigenvectors are their last
+//! rows, and those of the transformation are then changed by the first reflection of each column only. It is also what
+//! is accurate for a matrix that falls off towards its end, as those of a Lanczos process do (Parlett 1998, *The
+//! Symmetric Eigenvalue Problem*, section 8.13).
+
+#![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
+
+use super::{
+    block::Square,
+    implicit_ql::{ImplicitQl, NOTHING, unit_scale},
+    lanes::{Kernel, Lanes, Row, WIDTH, dispatch, sum},
+};
+
+/// Eigenvalues of the symmetric block tridiagonal matrix with the diagonal blocks `alpha` and the blocks `beta` below
+/// them (those beyond are not looked at), in no particular order, and into `tails` the last eight entries of each
+/// eigenvector. `None` when a number is not finite.
+///
+/// Only the lower triangles of `alpha` are read. The values have errors of a few roundings of the matrix's norm.
+pub(super) fn block_eigen(alpha: &[Square], beta: &[Square], tails: &mut Vec<Row>) -> Option<Vec<f64>> {
+    let n = alpha.len() * WIDTH;
+    tails.clear();
+    tails.resize(n, [0.0; WIDTH]);
+    if n == 0 {
+        return Some(Vec::new());
+    }
+    for at in 0..WIDTH {
+        tails[WIDTH - 1 - at][at] = 1.0;
+    }
+    let mut band = Band::new(alpha, beta)?;
+    let (mut diagonal, mut beside) = (vec![0.0; n], vec![0.0; n]);
+    dispatch(Reduce { band: &mut band, tails, diagonal: &mut diagonal, beside: &mut beside });
+    // The iteration is to find the values at the large end first, while few roundings are in them.
+    diagonal.reverse();
+    beside[..n - 1].reverse();
+    tails.reverse();
+    if !dispatch(ImplicitQl { vectors: tails, per: 1, diagonal: &mut diagonal, beside: &mut beside }) {
+        return None;
+    }
+    for value in &mut diagonal {
+        *value /= band.scale;
+    }
+    diagonal.iter().all(|value| value.is_finite()).then_some(diagonal)
+}
+
+/// Numbers kept of a column: seven above the diagonal, which mean nothing, and sixteen from it on, of which there may be
+/// so many while bulges are there; and one more so that columns are as long as rows of eight.
+const HEIGHT: usize = 3 * WIDTH;
+
+/// A symmetric matrix by columns, in half-bandwidth 15, followed by zeros for what reaches beyond its end.
+struct Band {
+    columns: Vec<f64>,
+    n: usize,
+    /// What the matrix has been multiplied by.
+    scale: f64,
+}
+
+/// Where the entries of a column from this row on begin.
+#[inline(always)]
+fn place(row: usize, column: usize) -> usize {
+    column * HEIGHT + WIDTH + row - column
+}
+
+/// H = I − τ v vᵀ on eight rows.
+#[derive(Clone, Copy)]
+struct Reflection<R> {
+    row: Row,
+    v: R,
+    tau: f64,
+}
+
+/// The reflection that leaves nothing of x after the entry `first` and does not touch those before it, and what it
+/// makes of that entry.
+#[inline(always)]
+fn reflection<L: Lanes>(lanes: L, x: &Row, first: usize) -> (Reflection<L::Reg>, f64) {
+    let mut row = *x;
+    row[..=first].fill(0.0);
+    let head = x[first];
+    let tail = sum(&lanes.row(lanes.mul(lanes.load(&row), lanes.load(&row))));
+    if tail <= NOTHING {
+        return (Reflection { row: [0.0; WIDTH], v: lanes.zero(), tau: 0.0 }, head);
+    }
+    let square = head.mul_add(head, tail);
+    let norm = square.sqrt();
+    let entry = if head > 0.0 { -norm } else { norm };
+    row[first] = head - entry;
+    // 2 / vᵀv
+    let tau = 1.0 / head.abs().mul_add(norm, square);
+    (Reflection { row, v: lanes.load(&row), tau }, entry)
+}
+
+/// Half the diagonal and all below it, by columns: what gives a symmetric matrix when its transpose is added.
+const LOWER: Square = {
+    let mut columns = [[0.0; WIDTH]; WIDTH];
+    let mut column = 0;
+    while column < WIDTH {
+        columns[column][column] = 0.5;
+        let mut row = column + 1;
+        while row < WIDTH {
+            columns[column][row] = 1.0;
+            row += 1;
+        }
+        column += 1;
+    }
+    columns
+};
+
+/// Columns times a vector.
+#[inline(always)]
+fn times<L: Lanes>(lanes: L, columns: &[L::Reg; WIDTH], v: &Row) -> L::Reg {
+    let [mut even, mut odd] = [lanes.zero(); 2];
+    for at in 0..WIDTH / 2 {
+        even = lanes.add_mul(even, columns[2 * at], lanes.splat(v[2 * at]));
+        odd = lanes.add_mul(odd, columns[2 * at + 1], lanes.splat(v[2 * at + 1]));
+    }
+    lanes.add(even, odd)
+}
+
+impl Band {
+    /// The matrix turned over, with entries of at most 2.
+    fn new(alpha: &[Square], beta: &[Square]) -> Option<Self> {
+        let blocks = alpha.len();
+        let beta = &beta[..blocks - 1];
+        let scale = unit_scale(alpha.iter().chain(beta).flatten().flatten())?;
+        let n = blocks * WIDTH;
+        let mut columns = vec![0.0; (n + 3 * WIDTH) * HEIGHT];
+        for (block, alpha) in alpha.iter().rev().enumerate() {
+            let first = block * WIDTH;
+            for column in 0..WIDTH {
+                let (rows, _) = columns[place(first, first + column)..].as_chunks_mut::<WIDTH>();
+                let turned = WIDTH - 1 - column;
+                rows[0] =
+                    std::array::from_fn(|row| scale * alpha[turned.max(WIDTH - 1 - row)][turned.min(WIDTH - 1 - row)]);
+                if block + 1 < blocks {
+                    let beta = &beta[blocks - 2 - block];
+                    rows[1] = std::array::from_fn(|row| scale * beta[turned][WIDTH - 1 - row]);
+                }
+            }
+        }
+        Some(Self { columns, n, scale })
+    }
+
+    /// Eight rows of eight columns.
+    #[inline(always)]
+    fn window<L: Lanes>(&self, lanes: L, row: usize, column: usize) -> [L::Reg; WIDTH] {
+        let numbers = &self.columns[place(row, column)..][..WIDTH * HEIGHT];
+        std::array::from_fn(|at| {
+            let (rows, _) = numbers[at * (HEIGHT - 1)..].as_chunks();
+            lanes.load(&rows[0])
+        })
+    }
+
+    #[inline(always)]
+    fn put<L: Lanes>(&mut self, lanes: L, row: usize, column: usize, values: [L::Reg; WIDTH]) {
+        let numbers = &mut self.columns[place(row, column)..][..WIDTH * HEIGHT];
+        for (at, value) in values.into_iter().enumerate() {
+            let (rows, _) = numbers[at * (HEIGHT - 1)..].as_chunks_mut();
+            rows[0] = lanes.row(value);
+        }
+    }
+
+    /// The square on the diagonal from row `at` on becomes H D H.
+    #[inline(always)]
+    fn both<L: Lanes>(&mut self, lanes: L, at: usize, h: &Reflection<L::Reg>) {
+        let d = self.window(lanes, at, at);
+        let lower: [L::Reg; WIDTH] = std::array::from_fn(|column| lanes.mul(d[column], lanes.load(&LOWER[column])));
+        let upper = lanes.sums(lower.map(|column| lanes.mul(column, h.v)));
+        let p = lanes.mul(lanes.add(times(lanes, &lower, &h.row), upper), lanes.splat(h.tau));
+        let shift = 0.5 * h.tau * sum(&lanes.row(lanes.mul(p, h.v)));
+        let w = lanes.sub_mul(p, h.v, lanes.splat(shift));
+        let row = lanes.row(w);
+        let d = std::array::from_fn(|column| {
+            let once = lanes.sub_mul(d[column], h.v, lanes.splat(row[column]));
+            lanes.sub_mul(once, w, lanes.splat(h.row[column]))
+        });
+        self.put(lanes, at, at, d);
+    }
+
+    /// The square below that becomes L H; returned.
+    #[inline(always)]
+    fn right<L: Lanes>(&self, lanes: L, at: usize, h: &Reflection<L::Reg>) -> [L::Reg; WIDTH] {
+        let l = self.window(lanes, at + WIDTH, at);
+        let y = lanes.mul(times(lanes, &l, &h.row), lanes.splat(h.tau));
+        std::array::from_fn(|column| lanes.sub_mul(l[column], y, lanes.splat(h.row[column])))
+    }
+
+    /// H L
+    #[inline(always)]
+    fn left<L: Lanes>(lanes: L, h: &Reflection<L::Reg>, l: &mut [L::Reg; WIDTH]) {
+        let along = lanes.sums(l.map(|column| lanes.mul(column, h.v)));
+        let z = lanes.row(lanes.mul(along, lanes.splat(h.tau)));
+        *l = std::array::from_fn(|column| lanes.sub_mul(l[column], h.v, lanes.splat(z[column])));
+    }
+
+    /// Sets what a reflection has left of a column from this row on.
+    #[inline(always)]
+    fn clear(&mut self, row: usize, column: usize, entry: f64, rows: usize) {
+        let numbers = &mut self.columns[place(row, column)..][..rows];
+        numbers.fill(0.0);
+        numbers[0] = entry;
+    }
+
+    /// Eight rows of one column.
+    #[inline(always)]
+    fn column(&self, row: usize, column: usize) -> &Row {
+        let (rows, _) = self.columns[place(row, column)..].as_chunks();
+        &rows[0]
+    }
+
+    /// Makes the blocks below the diagonal upper triangular.
+    #[inline(always)]
+    fn triangular<L: Lanes>(&mut self, lanes: L) {
+        for at in (0..self.n - WIDTH).step_by(WIDTH) {
+            let below = at + WIDTH;
+            for step in 0..WIDTH - 1 {
+                let (h, entry) = reflection(lanes, self.column(below, at + step), step);
+                if h.tau != 0.0 {
+                    let mut l = self.window(lanes, below, at);
+                    Self::left(lanes, &h, &mut l);
+                    self.put(lanes, below, at, l);
+                    self.both(lanes, below, &h);
+                    let next = self.right(lanes, below, &h);
+                    self.put(lanes, below + WIDTH, below, next);
+                }
+                self.clear(below + step, at + step, entry, WIDTH - step);
+            }
+        }
+    }
+
+    /// Applies a reflection to both sides of the rows from `at` on. The first column of the bulge that this makes is
+    /// reduced by the reflection that is returned, of the next eight rows.
+    #[inline(always)]
+    fn chase<L: Lanes>(&mut self, lanes: L, at: usize, h: &Reflection<L::Reg>) -> Reflection<L::Reg> {
+        self.both(lanes, at, h);
+        let mut l = self.right(lanes, at, h);
+        let (next, entry) = reflection(lanes, &lanes.row(l[0]), 0);
+        Self::left(lanes, &next, &mut l);
+        l[0] = lanes.load(&[entry, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        self.put(lanes, at + WIDTH, at, l);
+        next
+    }
+}
+
+/// Columns that are reduced at a time, so that a reflection does not have to wait for the one before it: each bulge
+/// follows the one before.
+const BULGES: usize = 2;
+/// By so many windows of eight rows: a bulge needs what is two windows further down.
+const DISTANCE: usize = 3;
+
+/// Reduces the matrix to tridiagonal form.
+struct Reduce<'a> {
+    band: &'a mut Band,
+    /// The first rows of the transformation, by columns.
+    tails: &'a mut [Row],
+    diagonal: &'a mut [f64],
+    beside: &'a mut [f64],
+}
+
+impl Kernel for Reduce<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { band, tails, diagonal, beside } = self;
+        let n = band.n;
+        band.triangular(lanes);
+        for first in (0..n).step_by(BULGES) {
+            let mut newest = [reflection(lanes, &[0.0; WIDTH], 0).0; BULGES];
+            let windows = (n - first).div_ceil(WIDTH);
+            for step in 0..windows + DISTANCE * (BULGES - 1) {
+                for (bulge, h) in newest.iter_mut().enumerate() {
+                    let Some(window) = step.checked_sub(DISTANCE * bulge) else { continue };
+                    let k = first + bulge;
+                    let at = k + 1 + window * WIDTH;
+                    if window == 0 && k < n {
+                        diagonal[k] = *band.column(k, k).first().unwrap_or(&0.0);
+                        let (start, entry) = reflection(lanes, band.column(k + 1, k), 0);
+                        beside[k] = entry;
+                        apply(lanes, &mut tails[k + 1..n.min(k + 1 + WIDTH)], &start);
+                        *h = start;
+                    }
+                    if at < n {
+                        *h = band.chase(lanes, at, h);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows times H.
+#[inline(always)]
+fn apply<L: Lanes>(lanes: L, rows: &mut [Row], h: &Reflection<L::Reg>) {
+    let mut along = lanes.zero();
+    for (row, &v) in rows.iter().zip(&h.row) {
+        along = lanes.add_mul(along, lanes.load(row), lanes.splat(v));
+    }
+    let along = lanes.mul(along, lanes.splat(h.tau));
+    for (row, &v) in rows.iter_mut().zip(&h.row) {
+        *row = lanes.row(lanes.sub_mul(lanes.load(row), along, lanes.splat(v)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::{krylov::Random, small::eigen};
+
+    /// Random blocks, those of each row `fall` times the size of those of the row before.
+    fn random(blocks: usize, fall: f64, seed: u64) -> (Vec<Square>, Vec<Square>) {
+        let mut random = Random(seed);
+        let (mut alpha, mut beta) = (Vec::new(), Vec::new());
+        let mut size = 1.0;
+        for _ in 0..blocks {
+            let mut square = |size: f64| -> Square { [(); WIDTH].map(|()| [(); WIDTH].map(|()| size * random.next())) };
+            let full = square(size);
+            alpha.push(std::array::from_fn(|i| std::array::from_fn(|j| full[i][j] + full[j][i])));
+            size *= fall;
+            let [mut upper, little] = [square(size), square(1e-8 * size)];
+            for (i, row) in upper.iter_mut().enumerate() {
+                row[..i].copy_from_slice(&little[i][..i]);
+            }
+            beta.push(upper);
+        }
+        (alpha, beta)
+    }
+
+    fn full(alpha: &[Square], beta: &[Square]) -> Vec<f64> {
+        let n = alpha.len() * WIDTH;
+        let mut a = vec![0.0; n * n];
+        for row in 0..n {
+            for column in 0..=row {
+                let [(block, i), (left, j)] = [row, column].map(|at| (at / WIDTH, at % WIDTH));
+                let value = match block - left {
+                    0 => alpha[block][i][j],
+                    1 => beta[left][i][j],
+                    _ => 0.0,
+                };
+                a[row * n + column] = value;
+                a[column * n + row] = value;
+            }
+        }
+        a
+    }
+
+    /// Eigenvalues, ascending, with the norms of the last block times their tails.
+    fn sorted(values: &[f64], tails: &[Row], last: &Square) -> Vec<(f64, f64)> {
+        let norm = |tail: &Row| {
+            let entry = |row: &Row| row.iter().zip(tail).map(|(a, b)| a * b).sum::<f64>();
+            last.iter().map(|row| entry(row).powi(2)).sum::<f64>().sqrt()
+        };
+        let mut found: Vec<(f64, f64)> = values.iter().zip(tails).map(|(&value, tail)| (value, norm(tail))).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        found
+    }
+
+    fn size(blocks: &[Square]) -> f64 {
+        blocks.iter().flatten().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max)
+    }
+
+    /// The values and tails are those of the full matrix. Of values nearer to each other than `apart` times the norm
+    /// the tails are compared together.
+    #[track_caller]
+    fn assert_as_full(alpha: &[Square], beta: &[Square], apart: f64) {
+        let n = alpha.len() * WIDTH;
+        let mut expected = vec![[0.0; WIDTH]; n];
+        for at in 0..WIDTH {
+            expected[n - WIDTH + at][at] = 1.0;
+        }
+        let values = eigen(&full(alpha, beta), n, &mut expected).unwrap();
+        let last = &beta[alpha.len() - 1];
+        let expected = sorted(&values, &expected, last);
+        let mut tails = Vec::new();
+        let values = block_eigen(alpha, beta, &mut tails).unwrap();
+        // The tails of all eigenvectors are eight orthonormal rows.
+        for i in 0..WIDTH {
+            for j in 0..WIDTH {
+                let inner: f64 = tails.iter().map(|tail| tail[i] * tail[j]).sum();
+                assert!((inner - f64::from(u8::from(i == j))).abs() < 1e-13, "{inner}");
+            }
+        }
+        let found = sorted(&values, &tails, last);
+        let norm = size(alpha) + 2.0 * size(&beta[..alpha.len() - 1]);
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found.0 - expected.0).abs() <= 32.0 * f64::EPSILON * norm, "{n}: {found:?} {expected:?}");
+        }
+        let mut first = 0;
+        while first < n {
+            let mut end = first + 1;
+            while end < n && expected[end].0 - expected[end - 1].0 <= apart * norm {
+                end += 1;
+            }
+            let together =
+                |list: &[(f64, f64)]| list[first..end].iter().map(|(_, norm)| norm * norm).sum::<f64>().sqrt();
+            let (found, expected) = (together(&found), together(&expected));
+            assert!((found - expected).abs() <= 1e-14 / apart.min(1e-3) * size(&[*last]), "{n}: {found} {expected}");
+            first = end;
+        }
+    }
+
+    #[test]
+    fn eigenvalues_and_tails_are_those_of_the_full_matrix() {
+        for blocks in [1, 2, 3, 4, 7, 18, 25] {
+            for fall in [1.0, 0.7, 1e-2, 1e-4] {
+                let (alpha, beta) = random(blocks, fall, 3 + blocks as u64);
+                assert_as_full(&alpha, &beta, 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn couplings_may_be_missing() {
+        for rank in [0, 1, 5] {
+            let (alpha, mut beta) = random(6, 0.5, 11);
+            for row in &mut beta[2][rank..] {
+                row.fill(0.0);
+            }
+            for row in &mut beta[4] {
+                row[rank] = 0.0;
+            }
+            assert_as_full(&alpha, &beta, 1e-3);
+        }
+    }
+
+    #[test]
+    fn equal_eigenvalues_are_all_found() {
+        let (alpha, beta) = random(3, 1.0, 17);
+        // Three copies that know nothing of one another.
+        let mut none = beta.clone();
+        none[2] = Square::default();
+        let (alpha, mut beta) = ([&alpha[..]; 3].concat(), [&none[..]; 3].concat());
+        beta[8] = random(1, 1.0, 19).1[0];
+        assert_as_full(&alpha, &beta, 1e-10);
+        // Only couplings, so that the spectrum is symmetric; one value eight times; nothing at all.
+        let zero = [Square::default(); 9];
+        let unit: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
+        assert_as_full(&zero, &beta, 1e-10);
+        assert_as_full(&[unit; 9], &zero, 1e-10);
+        assert_as_full(&zero, &zero, 1e-10);
+        let mut values = block_eigen(&zero, &[unit; 9], &mut Vec::new()).unwrap();
+        values.sort_by(f64::total_cmp);
+        for (at, value) in values.iter().rev().enumerate() {
+            let expected = 2.0 * (std::f64::consts::PI * (at / WIDTH + 1) as f64 / 10.0).cos();
+            assert!((value - expected).abs() < 1e-14, "{value} {expected}");
+        }
+    }
+
+    #[test]
+    fn entries_may_fall_to_nothing() {
+        let (alpha, beta) = random(25, 1e-30, 31);
+        let mut tails = Vec::new();
+        let mut values = block_eigen(&alpha, &beta, &mut tails).unwrap();
+        // The other blocks are nothing beside the first.
+        let mut first = block_eigen(&alpha[..1], &beta[..1], &mut Vec::new()).unwrap();
+        for list in [&mut values, &mut first] {
+            list.sort_by(|a, b| b.abs().total_cmp(&a.abs()));
+        }
+        for (at, value) in values.iter().enumerate() {
+            let expected = first.get(at).copied().unwrap_or(0.0);
+            assert!((value - expected).abs() < 1e-14, "{value} {expected}");
+        }
+        assert!(tails.iter().flatten().all(|x| x.abs() <= 1.0 + 1e-14));
+    }
+
+    #[test]
+    fn size_does_not_matter() {
+        let (alpha, beta) = random(4, 0.3, 23);
+        let scaled = |blocks: &[Square], by: f64| -> Vec<Square> {
+            blocks.iter().map(|block| block.map(|row| row.map(|x| x * by))).collect()
+        };
+        let mut tails = [Vec::new(), Vec::new()];
+        let values = block_eigen(&alpha, &beta, &mut tails[0]).unwrap();
+        for by in [2.0_f64.powi(-900), 2.0_f64.powi(900)] {
+            let other = block_eigen(&scaled(&alpha, by), &scaled(&beta, by), &mut tails[1]).unwrap();
+            assert!(values.iter().zip(&other).all(|(a, b)| a * by == *b));
+            assert_eq!(tails[0], tails[1]);
+        }
+    }
+
+    #[test]
+    fn not_finite_is_no_answer() {
+        for bad in [f64::NAN, f64::INFINITY] {
+            let (alpha, mut beta) = random(3, 1.0, 29);
+            beta[1][3][5] = bad;
+            assert_eq!(block_eigen(&alpha, &beta, &mut Vec::new()), None);
+            let (mut alpha, beta) = random(3, 1.0, 29);
+            alpha[2][7][0] = bad;
+            assert_eq!(block_eigen(&alpha, &beta, &mut Vec::new()), None);
+        }
+    }
+}
