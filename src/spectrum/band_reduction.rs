@@ -51,8 +51,8 @@ pub(super) fn block_eigen(alpha: &[Square], beta: &[Square], tails: &mut Vec<Row
     diagonal.iter().all(|value| value.is_finite()).then_some(diagonal)
 }
 
-/// Numbers kept of a column: seven above the diagonal, which mean nothing, and sixteen from it on, of which there may be
-/// so many while bulges are there; and one more so that columns are as long as rows of eight.
+/// Numbers kept of a column: eight above the diagonal, which mean nothing, and sixteen from it on, as many as there are
+/// beside a bulge.
 const HEIGHT: usize = 3 * WIDTH;
 
 /// A symmetric matrix by columns, in half-bandwidth 15, followed by zeros for what reaches beyond its end.

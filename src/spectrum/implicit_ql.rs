@@ -1,10 +1,10 @@
 //! The implicit QL iteration for symmetric tridiagonal matrices, several shifts at a time.
 //!
-//! A sweep with a shift chases one rotation after the other through the matrix, and each has to wait for the square root
-//! and the division of the one before it. So [`SWEEPS`] sweeps follow one another at a distance of two rows, like the
-//! bulges of a multishift iteration (Braman, Byers and Mathias 2002), and the processor works on them at once. Their
-//! shifts are the eigenvalues of the block at the end that they run to. They are more sweeps in all than with one shift
-//! from the newest matrix for each (by a third), and take half the time.
+//! A sweep with a shift chases one rotation after the other through the matrix, and each has to wait for the square
+//! root and the division of the one before it. So [`SWEEPS`] sweeps follow one another at a distance of two rows, like
+//! the bulges of a multishift iteration (Braman, Byers and Mathias 2002), and the processor works on them at once.
+//! Their shifts are the eigenvalues of the block at the end that they run to. There are a third more sweeps than with
+//! a shift of its own for each, and they take half the time.
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
@@ -230,5 +230,43 @@ fn rotate<L: Lanes>(lanes: L, sweep: Sweep, vectors: &mut [Row]) {
         let (x, y) = (lanes.load(left), lanes.load(right));
         *right = lanes.row(lanes.add_mul(lanes.mul(cosine, y), sine, x));
         *left = lanes.row(lanes.sub_mul(lanes.mul(cosine, x), sine, y));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spectrum::lanes::dispatch;
+
+    fn values(diagonal: &[f64], beside: &[f64]) -> Option<Vec<f64>> {
+        let mut d = diagonal.to_vec();
+        let mut e: Vec<f64> = beside.iter().copied().chain([0.0]).collect();
+        dispatch(ImplicitQl { vectors: &mut [], per: 0, diagonal: &mut d, beside: &mut e }).then(|| {
+            d.sort_by(f64::total_cmp);
+            d
+        })
+    }
+
+    #[test]
+    fn shifts_may_be_exact() {
+        // With zeros on the diagonal and ones beside it sweeps come upon exact eigenvalues.
+        for n in [1, 2, 3, 4, 5, 6, 7, 8, 9, 31, 64] {
+            let found = values(&vec![0.0; n], &vec![1.0; n - 1]).unwrap();
+            for (at, value) in found.iter().rev().enumerate() {
+                let expected = 2.0 * (std::f64::consts::PI * (at + 1) as f64 / (n + 1) as f64).cos();
+                assert!((value - expected).abs() < 2e-14, "{n}: {value} {expected}");
+            }
+            let steps: Vec<f64> = (0..n).map(|at| (at / 2) as f64).collect();
+            assert_eq!(values(&steps, &vec![0.0; n - 1]).unwrap(), steps);
+            assert_eq!(values(&vec![0.0; n], &vec![0.0; n - 1]).unwrap(), vec![0.0; n]);
+        }
+    }
+
+    #[test]
+    fn a_sweep_goes_on_where_both_entries_are_zero() {
+        let mut sweep = Sweep::start(1.0, 1.0);
+        let (mut d, mut e) = ([2.0, 1.0], [0.0, 0.0]);
+        sweep.turn(&mut d, &mut e);
+        assert_eq!((sweep.sine, sweep.cosine, d, e), (0.0, 1.0, [2.0, 1.0], [0.0, 0.0]));
     }
 }
