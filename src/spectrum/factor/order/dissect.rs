@@ -1,6 +1,6 @@
 //! Large graphs are cut into parts before the parts are ordered.
 //!
-//! Approximate minimum degree is the better order up to some 30 000 rows, but it cannot be interrupted, and its fill
+//! Approximate minimum degree is the better order up to some 50 000 rows, but it cannot be interrupted, and its fill
 //! grows faster than that of a dissection (George 1973). A part that is too large is cut at a level of a breadth-first
 //! search from one of its ends, a short one near the middle: the rows of the cut come after those of both sides.
 
@@ -8,7 +8,7 @@ use super::minimum_degree;
 use crate::watch::{Pulse, Stopped};
 
 /// Parts of so many rows are not cut further.
-const LARGEST: usize = 30_000;
+const LARGEST: usize = 55_000;
 
 /// What is to be done with rows.
 #[derive(Clone, Copy, PartialEq)]
