@@ -20,16 +20,25 @@ use super::{
 
 mod shift;
 
-/// Eigenvalues that a slice aims at.
-pub(super) const TARGET: f64 = 54.0;
-/// Eigenvalues that a slice may have before it is made narrower.
-const MOST: usize = 76;
+/// Eigenvalues that the first slices aim at, so that a few eigenvalues cost little.
+const TARGET: f64 = 54.0;
+/// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
+const WIDE: f64 = 70.0;
+/// Eigenvalues that a slice may have before it is made narrower, as a multiple of what it aims at.
+const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
-const BLOCKS: usize = 36;
-/// Blocks after which it looks at its Ritz values for the first time, as many as most processes need; and in the lowest
-/// process, which needs fewer, for nothing is beyond its left side.
+const BLOCKS: usize = 40;
+/// Blocks after which it looks at its Ritz values for the first time, as many as most processes need between slices of
+/// [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which needs fewer,
+/// for nothing is beyond its left side.
 const FIRST_LOOK: usize = 22;
+const PER_BLOCK: f64 = 3.5;
 const LOWEST_LOOK: usize = 18;
+
+/// How many eigenvalues the slice above so many aims at.
+pub(super) fn target(above: usize) -> f64 {
+    if (above as f64) < 2.0 * TARGET { TARGET } else { WIDE }
+}
 
 /// With fewer rows a basis is kept in double precision. It may come to hold a good part of the space, and what is left
 /// of that is then so little that single precision does not know it from rounding.
@@ -123,7 +132,8 @@ impl Piece {
             }
             let Some(above) = self.factor(tools, sigma, poll)? else { continue };
             let near = 1e-6 * half / TARGET;
-            match self.process(tools, Task { sigma, above, left: 0.0, right: Some(half), near }, poll) {
+            let task = Task { sigma, above, left: 0.0, right: Some(half), aim: TARGET, near };
+            match self.process(tools, task, poll) {
                 Ok(sides) => {
                     let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
                     return Ok(Some((end, sides.right)));
@@ -148,7 +158,8 @@ impl Piece {
         }
         let before = self.end(&bands[..bands.len() - 1]);
         let (left, right) = (end.upper - before.middle, Some(0.5 * end.step));
-        self.process(tools, Task { sigma: end.upper, above: end.above, left, right, near: 0.0 }, poll)
+        let aim = aim(before.above, end.above);
+        self.process(tools, Task { sigma: end.upper, above: end.above, left, right, aim, near: 0.0 }, poll)
     }
 
     /// Places the shift after an end, and leaves its factor in the tools. `again` is where to try first, and how often
@@ -172,9 +183,9 @@ impl Piece {
                 continue;
             };
             let Some(total) = above.checked_sub(below) else { break };
-            let most = if lower == 0.0 { MOST / 2 } else { MOST };
-            if total > most && upper - lower > 1e-7 * upper && attempt < 40 {
-                upper = lower + (upper - lower) * (0.8 * TARGET / total as f64).clamp(0.1, 0.8);
+            let target = if lower == 0.0 { 0.5 * TARGET } else { target(below) };
+            if total as f64 > MOST * target && upper - lower > 1e-7 * upper && attempt < 40 {
+                upper = lower + (upper - lower) * (0.8 * target / total as f64).clamp(0.1, 0.8);
                 continue;
             }
             return Ok(Shift { place: end.place, lower, upper, below, above, middle: end.middle, attempt });
@@ -209,6 +220,7 @@ impl Piece {
             above,
             left: upper - middle,
             right: (above < count).then_some(0.5 * shift.end().step),
+            aim: aim(below, above),
             near: 1e-6 * (upper - lower) / (above - below).max(1) as f64,
         };
         self.process(tools, task, poll)
@@ -282,7 +294,7 @@ impl Piece {
 
     /// Runs Lanczos at a factored shift until both sides reach as far as they are asked to.
     fn process(&self, tools: &mut Tools, task: Task, poll: &mut Poll) -> Result<Sides, Advance> {
-        let Task { sigma, above, left, right, near } = task;
+        let Task { sigma, above, left, right, aim, near } = task;
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch, .. } = tools;
@@ -291,9 +303,9 @@ impl Piece {
         let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, basis, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
-        let spacing = (left + right.unwrap_or(left)) / TARGET;
+        let spacing = (left + right.unwrap_or(left)) / aim;
         let lowest = sigma <= left;
-        let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK };
+        let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK + ((aim - TARGET) / PER_BLOCK) as usize };
         for blocks in 1..=most {
             krylov.step(poll)?;
             if blocks != most && blocks != look {
@@ -362,6 +374,11 @@ impl Piece {
     }
 }
 
+/// How many eigenvalues a process looks for between slices above so many.
+fn aim(below: usize, above: usize) -> f64 {
+    0.5 * (target(below) + target(above))
+}
+
 /// One process.
 #[derive(Clone, Copy)]
 struct Task {
@@ -372,6 +389,8 @@ struct Task {
     left: f64,
     /// How far it is to see on its right side, if that is wanted.
     right: Option<f64>,
+    /// How many eigenvalues there may be on both sides.
+    aim: f64,
     /// An eigenvalue nearer than this moves the shift.
     near: f64,
 }

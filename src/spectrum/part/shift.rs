@@ -33,7 +33,7 @@ impl End {
 
     /// The end of a slice.
     pub(super) fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize)) -> Self {
-        let step = distance(lower, upper, counts.1 - counts.0);
+        let step = distance(lower, upper, counts);
         Self { place: place + 1, upper, above: counts.1, step, middle: upper + 0.5 * step }
     }
 }
@@ -68,11 +68,11 @@ impl Shift {
 }
 
 /// The distance to the next shift, from what the slice before had.
-fn distance(lower: f64, upper: f64, count: usize) -> f64 {
-    // The first slice begins at zero and is half as wide as the ones after it.
-    let width = if lower == 0.0 { 2.0 * upper } else { upper - lower };
-    let count = if lower == 0.0 { 2 * count } else { count };
-    (super::TARGET / (count.max(1) as f64) * width).clamp(0.5 * width, 2.5 * width)
+fn distance(lower: f64, upper: f64, (below, above): (usize, usize)) -> f64 {
+    let count = (above - below).max(1) as f64;
+    // The first slice begins at zero and is half as wide as the one after it.
+    let before = if lower == 0.0 { 2.0 * upper } else { upper - lower };
+    (super::target(above) / count * (upper - lower)).clamp(0.5 * before, 2.5 * before)
 }
 
 /// Where a chain can end, by what the process at its last shift has seen on its right side.
