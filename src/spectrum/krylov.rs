@@ -133,9 +133,13 @@ impl<'a> Krylov<'a> {
         let Scratch { now, past, next, work, mass, newest, .. } = &mut *scratch;
         for buffer in [now, past, next, work, mass, newest] {
             buffer.reserve(len);
+            poll.spend(8 * len)?;
         }
         let mut random = Random(seed);
-        scratch.work.flat().fill_with(|| random.next());
+        for values in scratch.work.flat().chunks_mut(1 << 18) {
+            values.fill_with(|| random.next());
+            poll.spend(8 * values.len())?;
+        }
         let mut this = Self {
             pencil,
             factor,
@@ -179,6 +183,7 @@ impl<'a> Krylov<'a> {
             poll.charge(Cost::Solves);
         }
         let (along, seen) = self.recur();
+        poll.spend(2 * WIDTH * self.scratch.work.rows().len())?;
         let lost = self.orthogonalise(&along, seen, poll)?;
         let mut beta = self.normalise(blocks, poll)?;
         self.note(lost, &mut beta, poll)?;
@@ -295,6 +300,7 @@ impl<'a> Krylov<'a> {
                 self.next_to();
             }
             let Scratch { next, work, .. } = &mut *self.scratch;
+            poll.spend(2 * WIDTH * work.rows().len())?;
             let (upper, inverse, worst, lost) = cholesky(&gram);
             // The rows of lost columns are zero, so that their random replacements stay out of R.
             total = product(&upper, &total);

@@ -5,6 +5,8 @@
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
+use std::ops::Range;
+
 use super::{
     block::{self, Square},
     lanes::{Kernel, Lanes, Row, WIDTH},
@@ -90,30 +92,32 @@ pub(super) struct Right<'a> {
 /// Products `Vᵢᵀ R` of every block of a basis with each of some right sides: of the first one with all blocks, then of
 /// the next. A block comes from afar, and once for all of them.
 ///
-/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles.
+/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles. They are
+/// added to what is there, 64 rows for each block and right side, of which [`totals`] makes squares.
 pub(super) struct PanelDots<'a, 'b, const N: usize> {
     pub basis: &'a [&'b [Panel]],
     pub right: [Right<'a>; N],
-    /// 64 rows for each block and right side.
-    pub room: &'a mut Vec<Row>,
-    pub sums: &'a mut Vec<Square>,
+    /// Of one [`STRETCH`] or several.
+    pub rows: Range<usize>,
+    pub room: &'a mut [Row],
 }
+
+/// Rows by which the kernels below can be divided.
+pub(super) const STRETCH: usize = TILE * ROWS;
 
 impl<const N: usize> Kernel for PanelDots<'_, '_, N> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, right, room, sums } = self;
+        let Self { basis, right, rows, room } = self;
         let less: [Option<[L::Reg; WIDTH]>; N] =
             std::array::from_fn(|at| right[at].less.map(|(_, factor)| factor.each_ref().map(|row| lanes.load(row))));
-        let len = right.first().map_or(0, |right| right.w.len());
-        room.clear();
-        room.resize(N * basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
+        let len = rows.end;
         let mut tiles = [[Panel::default(); TILE]; N];
         let mut group = [[0.0; WIDTH]; ROWS];
-        for at in 0..len.div_ceil(TILE * ROWS) {
-            let rows = at * TILE * ROWS..len.min((at + 1) * TILE * ROWS);
+        for at in rows.start / STRETCH..len.div_ceil(STRETCH) {
+            let rows = at * STRETCH..len.min((at + 1) * STRETCH);
             let used = panels(rows.len());
             for ((tile, right), factor) in tiles.iter_mut().zip(&right).zip(&less) {
                 for (panel, first) in tile[..used].iter_mut().zip(rows.clone().step_by(ROWS)) {
@@ -137,7 +141,6 @@ impl<const N: usize> Kernel for PanelDots<'_, '_, N> {
                 }
             }
         }
-        totals(room, sums);
     }
 }
 
@@ -206,7 +209,7 @@ fn with_tile<L: Lanes>(lanes: L, block: &[Panel], tile: &[Panel], total: &mut [R
 }
 
 /// The products that eight partial sums each say.
-fn totals(room: &[Row], sums: &mut Vec<Square>) {
+pub(super) fn totals(room: &[Row], sums: &mut Vec<Square>) {
     sums.clear();
     sums.extend(room.chunks(WIDTH * WIDTH).map(|total| -> Square {
         std::array::from_fn(|i| std::array::from_fn(|j| total[i * WIDTH + j].iter().sum()))
@@ -248,11 +251,13 @@ const PAGE: usize = 8;
 /// `w −= U M` if such a pair is given.
 ///
 /// It goes from the end to the beginning, for the end of the basis is what the cache has of it after [`PanelDots`].
-pub(super) struct PanelUpdate<'a, 'b> {
+pub(super) struct PanelUpdate<'a, 'b, 'c> {
     pub basis: &'a [&'b [Panel]],
     pub factors: &'a [Single],
     pub w: &'a mut [Row],
-    pub less: Less<'a>,
+    pub less: &'a mut Less<'c>,
+    /// Of one [`STRETCH`] or several.
+    pub rows: Range<usize>,
 }
 
 /// Eight by eight numbers in single precision, by rows.
@@ -272,19 +277,20 @@ pub(super) enum Less<'a> {
     },
 }
 
-impl Kernel for PanelUpdate<'_, '_> {
+impl Kernel for PanelUpdate<'_, '_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, factors, w, mut less } = self;
-        let times = match &less {
+        let Self { basis, factors, w, less, rows } = self;
+        let times = match &*less {
             Less::Nothing => [lanes.zero(); WIDTH],
             Less::Product(_, m) | Less::Changed { m, .. } => m.each_ref().map(|row| lanes.load(row)),
         };
         let mut sums = [[Panel::default(); PAGE]; 2];
-        for (at, w) in w.chunks_mut(PAGE * ROWS).enumerate().rev() {
-            let first = at * PAGE;
+        let start = rows.start / ROWS;
+        for (at, w) in w[rows].chunks_mut(PAGE * ROWS).enumerate().rev() {
+            let first = start + at * PAGE;
             let range = first..first + panels(w.len());
             for sums in &mut sums {
                 sums[..range.len()].fill(Panel::default());
@@ -293,7 +299,7 @@ impl Kernel for PanelUpdate<'_, '_> {
             for (number, block) in basis.iter().enumerate() {
                 let block = &block[range.clone()];
                 for (side, sums) in sums[..sides].iter_mut().enumerate() {
-                    let factor = match &less {
+                    let factor = match &*less {
                         Less::Changed { factors: others, .. } if side == 1 => &others[number],
                         _ => &factors[number],
                     };
@@ -310,7 +316,7 @@ impl Kernel for PanelUpdate<'_, '_> {
                 }
                 let [change, other] = &changes;
                 let rows = group * ROWS..group * ROWS + w.len();
-                match &mut less {
+                match &mut *less {
                     Less::Nothing => {
                         for (w, change) in w.iter_mut().zip(change) {
                             *w = lanes.row(lanes.sub(lanes.load(w), lanes.load(change)));

@@ -18,11 +18,13 @@
 //! A basis in double precision is made orthogonal to all blocks in every step. It is for pieces where the squares
 //! count, too, so that there C is known and enters the operator ([`projected()`](super::projected())).
 
+use std::ops::Range;
+
 use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
     block::{Dots, Multiply, Square, Update},
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Less, Panel, PanelDots, PanelUpdate, Right, Single},
+    panel::{Less, Panel, PanelDots, PanelUpdate, Right, STRETCH, Single, totals},
     pencil::Product,
     poll::{Poll, Stop},
     timings::Cost,
@@ -138,14 +140,11 @@ impl Krylov<'_> {
                 let Scratch { blocks, images, now, work, room, .. } = &mut *self.scratch;
                 let mut sums = seen;
                 if sums.is_empty() {
-                    let images = panels(&images[..count]);
                     let right = [Right { mass: &Product::Unit, w: work.rows(), less: Some((now.rows(), along)) }];
-                    dispatch(PanelDots { basis: &images, right, room, sums: &mut sums });
+                    sums = products(&panels(&images[..count]), right, room, poll)?;
                 }
                 let less = Less::Product(now.rows(), along);
-                let (basis, factors) = (panels(&blocks[..count]), single(&sums));
-                dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
-                poll.spend(work.rows().len() * count * WIDTH)?;
+                take_out(&panels(&blocks[..count]), &single(&sums), work.rows_mut(), less, poll)?;
                 self.losses.round(&sums);
                 (count == older).then(|| largest(&sums))
             }
@@ -161,16 +160,13 @@ impl Krylov<'_> {
     fn pair(&mut self, along: &Square, poll: &mut Poll) -> Result<f64, Stop> {
         let older = self.blocks() - 1;
         let Scratch { blocks, now, work, newest, room, .. } = &mut *self.scratch;
-        let len = work.rows().len();
         let (basis, rest) = blocks.split_at_mut(older);
         let basis = panels(basis);
         let right = [
             Right { mass: &Product::Unit, w: newest.rows(), less: None },
             Right { mass: &self.pencil.mass, w: work.rows(), less: Some((newest.rows(), along)) },
         ];
-        let mut sums = Vec::new();
-        dispatch(PanelDots { basis: &basis, right, room, sums: &mut sums });
-        poll.spend(len * older * WIDTH)?;
+        let mut sums = products(&basis, right, room, poll)?;
         let (c, d) = sums.split_at_mut(older);
         // It is orthogonal to the block before it to more digits than are seen here.
         c[older - 1] = Square::default();
@@ -185,8 +181,7 @@ impl Krylov<'_> {
         }
         let (factors, others) = (single(d), single(c));
         let less = Less::Changed { u: now.rows_mut(), m: &along, factors: &others, copy: &mut rest[0] };
-        dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
-        poll.spend(len * older * WIDTH)?;
+        take_out(&basis, &factors, work.rows_mut(), less, poll)?;
         // The newest block has become shorter by half of CᵀC, and T is that of blocks of length one: what is below its
         // diagonal block there is so much more, and what is beside it so much less.
         let lacks: Square = std::array::from_fn(|i| {
@@ -215,11 +210,8 @@ impl Krylov<'_> {
             Basis::Single => {
                 let basis = panels(&basis[..blocks.saturating_sub(1)]);
                 let right = [Right { mass: &self.pencil.mass, w: work.rows(), less: None }];
-                dispatch(PanelDots { basis: &basis, right, room, sums: &mut sums });
-                poll.spend(len * blocks * WIDTH / 2)?;
-                let (factors, less) = (single(&sums), Less::Nothing);
-                dispatch(PanelUpdate { basis: &basis, factors: &factors, w: work.rows_mut(), less });
-                poll.spend(len * blocks * WIDTH / 2)?;
+                sums = products(&basis, right, room, poll)?;
+                take_out(&basis, &single(&sums), work.rows_mut(), Less::Nothing, poll)?;
             }
             Basis::Double(locked) => {
                 let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
@@ -314,6 +306,46 @@ impl Krylov<'_> {
     pub(in crate::spectrum) fn leak(&self) -> f64 {
         self.losses.leak()
     }
+}
+
+/// [`PanelDots`] over all rows.
+fn products<const N: usize>(
+    basis: &[&[Panel]],
+    right: [Right; N],
+    room: &mut Vec<Row>,
+    poll: &mut Poll,
+) -> Result<Vec<Square>, Stop> {
+    room.clear();
+    room.resize(N * basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
+    let len = right.first().map_or(0, |right| right.w.len());
+    for rows in stretches(len, basis.len()) {
+        poll.spend(rows.len() * basis.len() * WIDTH)?;
+        dispatch(PanelDots { basis, right, rows, room });
+    }
+    let mut sums = Vec::new();
+    totals(room, &mut sums);
+    Ok(sums)
+}
+
+/// [`PanelUpdate`] of all rows.
+fn take_out(
+    basis: &[&[Panel]],
+    factors: &[Single],
+    w: &mut [Row],
+    mut less: Less,
+    poll: &mut Poll,
+) -> Result<(), Stop> {
+    for rows in stretches(w.len(), basis.len()).rev() {
+        poll.spend(rows.len() * basis.len() * WIDTH)?;
+        dispatch(PanelUpdate { basis, factors, w, less: &mut less, rows });
+    }
+    Ok(())
+}
+
+/// Ranges of rows that a pass over so many blocks takes a few milliseconds for.
+fn stretches(len: usize, blocks: usize) -> impl DoubleEndedIterator<Item = Range<usize>> {
+    let step = ((1 << 22) / (blocks.max(1) * WIDTH * STRETCH)).max(1) * STRETCH;
+    (0..len.div_ceil(step)).map(move |at| at * step..len.min((at + 1) * step))
 }
 
 fn panels(blocks: &[Vec<Panel>]) -> Vec<&[Panel]> {
