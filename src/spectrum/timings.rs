@@ -73,6 +73,10 @@ pub struct Timings {
     pub solves: usize,
     /// Lanczos processes.
     pub processes: usize,
+    /// Older blocks of a basis that another block was made orthogonal to, once for each pair.
+    pub pairs: usize,
+    /// Older blocks that were read for that: two new ones may need one at a time.
+    pub passed: usize,
     /// Numbers in one factor; the sum over the pieces of a mesh.
     pub entries: usize,
     /// Multiplications of one numeric factorisation, likewise.
@@ -105,6 +109,8 @@ impl Timings {
         self.factorisations += other.factorisations;
         self.solves += other.solves;
         self.processes += other.processes;
+        self.pairs += other.pairs;
+        self.passed += other.passed;
         self.entries += other.entries;
         self.multiplications += other.multiplications;
     }

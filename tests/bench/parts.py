@@ -7,7 +7,8 @@ process, taken as equally long:
     factorisation      2 flops a multiplication; 8 f bytes written
     solves             4 f flops a right-hand side; the factor is read twice a block, 8 columns of the block with it
     orthogonalisation  4·64 n flops in single precision for each pair of a new block and an older one, whose 32 n bytes
-                       are read twice
+                       are read twice, for two new blocks at a time or one; and in each step 6·64 n flops of the
+                       recurrence in double precision, which count twice, and seven blocks read or written
     products           2·8 flops an entry of B; B's 12 bytes an entry and the block read, one written
 
 What is not counted (dense eigenproblems, orthonormal bases of blocks, assembly, ordering) is shown by time alone. The
@@ -31,7 +32,6 @@ def counted(told):
     n, entries, solves, processes = told["order"], told["entries"], told["solves"], max(told["processes"], 1)
     block = 8 * n * WIDTH
     blocks = solves / processes
-    pairs = processes * blocks * (blocks + 1) / 2
     # About 7 entries in a row of B on a closed triangle mesh.
     mass = 7 * n
     products = 2 * solves
@@ -42,7 +42,11 @@ def counted(told):
             8 * entries,
         ),
         "solves": (4 * entries * WIDTH * solves, (2 * 8 * entries + 4 * block) * solves, 8 * entries + block),
-        "orthogonalisation": (4 * 64 * n * pairs, block * pairs, block // 2 * blocks),
+        "orthogonalisation": (
+            4 * 64 * n * (told["pairs"] + 3 * solves),
+            block * (told["passed"] + 7 * solves),
+            block // 2 * blocks,
+        ),
         "products": (2 * WIDTH * mass * products, (12 * mass + 2 * block) * products, 12 * mass + 2 * block),
     }
 

@@ -115,6 +115,7 @@ fn tell(options: &Options, file: &str, spectrum: &Spectrum, wall: f64) {
                 "mesh": file, "order": spectrum.order, "asked": options.count, "found": spectrum.count(),
                 "bands": spectrum.bands.len(), "processor": timings.total(), "wall": wall, "parts": parts,
                 "factorisations": timings.factorisations, "solves": timings.solves, "processes": timings.processes,
+                "pairs": timings.pairs, "passed": timings.passed,
                 "entries": timings.entries, "multiplications": timings.multiplications,
                 "peak": peak(), "eigenvalues": spectrum.eigenvalues(), "errors": spectrum.residuals(),
             });

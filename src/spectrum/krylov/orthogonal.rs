@@ -335,6 +335,9 @@ fn take_out(
     mut less: Less,
     poll: &mut Poll,
 ) -> Result<(), Stop> {
+    let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
+    poll.meter.timings.pairs += sides * basis.len();
+    poll.meter.timings.passed += basis.len();
     for rows in stretches(w.len(), basis.len()).rev() {
         poll.spend(rows.len() * basis.len() * WIDTH)?;
         dispatch(PanelUpdate { basis, factors, w, less: &mut less, rows });
