@@ -1,6 +1,10 @@
 //! The order of elimination.
 
+mod coarse;
+mod degree;
 mod dissect;
+mod refine;
+mod separate;
 
 use faer::{
     dyn_stack::{MemBuffer, MemStack},
@@ -15,9 +19,13 @@ use crate::{
 /// No parent: a root of the elimination forest.
 pub(super) const ROOT: u32 = u32::MAX;
 
-/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree (within the parts of a
-/// [dissection](dissect) where there are many rows), then a postorder of the elimination tree in which a column's
-/// heaviest child comes last.
+/// Up to so many rows faer's minimum degree is done in less time than a cancellation may take. It cannot be
+/// interrupted, and knows nothing of parts.
+const SHORT: usize = 55_000;
+
+/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree, [our own](degree) where
+/// there are many rows and in the stages of a [dissection](dissect) where there are very many, then a postorder of the
+/// elimination tree in which a column's heaviest child comes last.
 ///
 /// Returns `None` when the ordering runs out of memory or of indices.
 ///
@@ -26,7 +34,11 @@ pub(super) const ROOT: u32 = u32::MAX;
 pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Vec<u32>>, Stopped> {
     let n = matrix.order();
     let (offsets, neighbours) = matrix.graph(pulse)?;
-    let Some(mut forward) = dissect::order(&offsets, &neighbours, pulse)? else { return Ok(None) };
+    pulse.ask()?;
+    let found =
+        if n <= SHORT { minimum_degree(&offsets, &neighbours) } else { dissect::order(&offsets, &neighbours, pulse)? };
+    let Some(mut forward) = found else { return Ok(None) };
+    pulse.ask()?;
     let mut inverse = vec![0_u32; n];
     for (new, &old) in forward.iter().enumerate() {
         inverse[old as usize] = new as u32;
@@ -48,7 +60,8 @@ pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Op
     Ok(Some(forward))
 }
 
-fn minimum_degree(n: usize, offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
+fn minimum_degree(offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
+    let n = offsets.len() - 1;
     let columns: Vec<u32> = offsets.iter().map(|&at| u32::try_from(at).ok()).collect::<Option<_>>()?;
     let pattern = SymbolicSparseColMatRef::<u32>::new_checked(n, n, &columns, None, neighbours);
     let mut forward = vec![0_u32; n];

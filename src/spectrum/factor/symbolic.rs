@@ -222,6 +222,9 @@ fn pieces(
     Ok((pieces, list))
 }
 
+/// Of more rows than these the factor is far larger than the caches, and a stored zero costs about twice as much.
+const MANY: usize = 100_000;
+
 /// Columns with nested patterns, then merged with their parents while few zeros are stored for it. Of small supernodes
 /// many may be: a solve spends more on coming to another supernode than on some fifty zeros.
 ///
@@ -237,6 +240,7 @@ fn supernodes(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>,
         zeros: usize,
     }
     let n = parent.len();
+    let price = if n > MANY { 2.0 } else { 1.0 };
     let mut stack: Vec<Node> = Vec::new();
     let mut column = 0;
     while column < n {
@@ -256,7 +260,7 @@ fn supernodes(parent: &[u32], counts: &[u32], pulse: &Pulse) -> Result<Vec<u32>,
             let zeros = child.zeros + node.zeros + inner * (outer + node.below - child.below);
             let width = inner + outer;
             let size = width * (width + 1) / 2 + width * node.below;
-            let share = zeros as f64 / size as f64;
+            let share = price * zeros as f64 / size as f64;
             let merge = match width {
                 0..=4 => share < 0.9,
                 5..=8 => share < 0.6,
