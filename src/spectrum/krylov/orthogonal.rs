@@ -286,8 +286,10 @@ impl Krylov<'_> {
     fn note_all(&mut self, beta: &mut Square, poll: &mut Poll) -> Result<(), Stop> {
         let Some(mut lost) = self.lost.pop() else { return Ok(()) };
         if (0..WIDTH).any(|column| norm(&lost, column) > norm(&[*beta], column)) {
-            let Scratch { next, work, .. } = &mut *self.scratch;
+            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
             work.flat().copy_from_slice(next.flat());
+            // Where B times the newest block was left, which decomposing takes for that.
+            std::mem::swap(mass, newest);
             let more = self.clean(self.blocks(), poll)?;
             for (lost, more) in lost.iter_mut().zip(&more) {
                 let more = product(more, beta);
