@@ -152,10 +152,12 @@ impl Band {
     #[inline(always)]
     fn window<L: Lanes>(&self, lanes: L, row: usize, column: usize) -> [L::Reg; WIDTH] {
         let numbers = &self.columns[place(row, column)..][..WIDTH * HEIGHT];
-        std::array::from_fn(|at| {
+        let mut window = [lanes.zero(); WIDTH];
+        for (at, to) in window.iter_mut().enumerate() {
             let (rows, _) = numbers[at * (HEIGHT - 1)..].as_chunks();
-            lanes.load(&rows[0])
-        })
+            *to = lanes.load(&rows[0]);
+        }
+        window
     }
 
     #[inline(always)]
@@ -170,34 +172,46 @@ impl Band {
     /// The square on the diagonal from row `at` on becomes H D H.
     #[inline(always)]
     fn both<L: Lanes>(&mut self, lanes: L, at: usize, h: &Reflection<L::Reg>) {
-        let d = self.window(lanes, at, at);
-        let lower: [L::Reg; WIDTH] = std::array::from_fn(|column| lanes.mul(d[column], lanes.load(&LOWER[column])));
-        let upper = lanes.sums(lower.map(|column| lanes.mul(column, h.v)));
+        let mut d = self.window(lanes, at, at);
+        let (mut lower, mut along) = (d, d);
+        for ((lower, along), mask) in lower.iter_mut().zip(&mut along).zip(&LOWER) {
+            *lower = lanes.mul(*lower, lanes.load(mask));
+            *along = lanes.mul(*lower, h.v);
+        }
+        let upper = lanes.sums(along);
         let p = lanes.mul(lanes.add(times(lanes, &lower, &h.row), upper), lanes.splat(h.tau));
         let shift = 0.5 * h.tau * sum(&lanes.row(lanes.mul(p, h.v)));
         let w = lanes.sub_mul(p, h.v, lanes.splat(shift));
         let row = lanes.row(w);
-        let d = std::array::from_fn(|column| {
-            let once = lanes.sub_mul(d[column], h.v, lanes.splat(row[column]));
-            lanes.sub_mul(once, w, lanes.splat(h.row[column]))
-        });
+        for (column, (&row, &v)) in d.iter_mut().zip(row.iter().zip(&h.row)) {
+            let once = lanes.sub_mul(*column, h.v, lanes.splat(row));
+            *column = lanes.sub_mul(once, w, lanes.splat(v));
+        }
         self.put(lanes, at, at, d);
     }
 
     /// The square below that becomes L H; returned.
     #[inline(always)]
     fn right<L: Lanes>(&self, lanes: L, at: usize, h: &Reflection<L::Reg>) -> [L::Reg; WIDTH] {
-        let l = self.window(lanes, at + WIDTH, at);
+        let mut l = self.window(lanes, at + WIDTH, at);
         let y = lanes.mul(times(lanes, &l, &h.row), lanes.splat(h.tau));
-        std::array::from_fn(|column| lanes.sub_mul(l[column], y, lanes.splat(h.row[column])))
+        for (column, &v) in l.iter_mut().zip(&h.row) {
+            *column = lanes.sub_mul(*column, y, lanes.splat(v));
+        }
+        l
     }
 
     /// H L
     #[inline(always)]
     fn left<L: Lanes>(lanes: L, h: &Reflection<L::Reg>, l: &mut [L::Reg; WIDTH]) {
-        let along = lanes.sums(l.map(|column| lanes.mul(column, h.v)));
-        let z = lanes.row(lanes.mul(along, lanes.splat(h.tau)));
-        *l = std::array::from_fn(|column| lanes.sub_mul(l[column], h.v, lanes.splat(z[column])));
+        let mut along = *l;
+        for column in &mut along {
+            *column = lanes.mul(*column, h.v);
+        }
+        let z = lanes.row(lanes.mul(lanes.sums(along), lanes.splat(h.tau)));
+        for (column, &z) in l.iter_mut().zip(&z) {
+            *column = lanes.sub_mul(*column, h.v, lanes.splat(z));
+        }
     }
 
     /// Sets what a reflection has left of a column from this row on.

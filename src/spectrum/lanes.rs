@@ -4,6 +4,10 @@
 //! AVX2 registers or an array that the compiler makes the best of. The choice is made at run time; the results are the
 //! same bits, because all of them fuse every multiplication with its addition and add in the same order. Machines that
 //! share a store of spectra may therefore differ.
+//!
+//! Where a kernel makes an array of registers by some arithmetic, it does so in a loop. A closure for
+//! `array::from_fn` or `map` is compiled for no instruction set: where the compiler leaves it a function of its own,
+//! every operation in it is a call.
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
@@ -200,9 +204,11 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn columns(self, rows: &[Row; 16]) -> [__m512; WIDTH] {
-        let row = |at: usize| self.0.avx512f._mm512_cvtpd_ps(self.load(&rows[at]));
-        let low = transpose(self.0.avx, std::array::from_fn(row));
-        let high = transpose(self.0.avx, std::array::from_fn(|at| row(8 + at)));
+        let mut halves = [[pulp::cast([0.0_f32; 8]); 8]; 2];
+        for (row, to) in rows.iter().zip(halves.as_flattened_mut()) {
+            *to = self.0.avx512f._mm512_cvtpd_ps(self.load(row));
+        }
+        let (low, high) = (transpose(self.0.avx, halves[0]), transpose(self.0.avx, halves[1]));
         std::array::from_fn(|at| pulp::cast([low[at], high[at]]))
     }
     #[inline(always)]
@@ -262,12 +268,18 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn sums(self, values: [[__m256d; 2]; WIDTH]) -> [__m256d; 2] {
         let avx = self.0.avx;
-        let four = |at: usize, half: usize| {
-            let twos = |at: usize| avx._mm256_hadd_pd(values[at][half], values[at + 1][half]);
-            let (x, y) = (twos(at), twos(at + 2));
-            avx._mm256_add_pd(avx._mm256_permute2f128_pd::<0x20>(x, y), avx._mm256_permute2f128_pd::<0x31>(x, y))
-        };
-        [0, 4].map(|at| avx._mm256_add_pd(four(at, 0), four(at, 1)))
+        let mut sums = values[0];
+        for (to, [a, b, c, d]) in sums.iter_mut().zip(values.as_chunks().0) {
+            let mut fours = *a;
+            for (half, to) in fours.iter_mut().enumerate() {
+                let (x, y) = (avx._mm256_hadd_pd(a[half], b[half]), avx._mm256_hadd_pd(c[half], d[half]));
+                let (left, right) =
+                    (avx._mm256_permute2f128_pd::<0x20>(x, y), avx._mm256_permute2f128_pd::<0x31>(x, y));
+                *to = avx._mm256_add_pd(left, right);
+            }
+            *to = avx._mm256_add_pd(fours[0], fours[1]);
+        }
+        sums
     }
     #[inline(always)]
     fn wide(self, values: &[f32; 16]) -> [__m256; 2] {
@@ -292,12 +304,12 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn columns(self, rows: &[Row; 16]) -> [[__m256; 2]; WIDTH] {
-        let row = |at: usize| -> __m256 {
-            let [low, high] = self.load(&rows[at]);
-            pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)])
-        };
-        let low = transpose(self.0.avx, std::array::from_fn(row));
-        let high = transpose(self.0.avx, std::array::from_fn(|at| row(8 + at)));
+        let mut halves = [[pulp::cast([0.0_f32; 8]); 8]; 2];
+        for (row, to) in rows.iter().zip(halves.as_flattened_mut()) {
+            let [low, high] = self.load(row);
+            *to = pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)]);
+        }
+        let (low, high) = (transpose(self.0.avx, halves[0]), transpose(self.0.avx, halves[1]));
         std::array::from_fn(|at| [low[at], high[at]])
     }
     #[inline(always)]

@@ -127,8 +127,12 @@ fn pass<L: Lanes, const R: usize>(
     from: usize,
 ) {
     let width = v.len();
-    let entry = |x: &[Row], row: usize| lanes.splat(x[(at + row) / WIDTH][(at + row) % WIDTH]);
-    let here: [[L::Reg; 3]; R] = std::array::from_fn(|row| [entry(v, row), entry(p, row), entry(next, row)]);
+    let mut here = [[lanes.zero(); 3]; R];
+    for (row, here) in (at..).zip(&mut here) {
+        for (entry, from) in here.iter_mut().zip([v, p, next]) {
+            *entry = lanes.splat(from[row / WIDTH][row % WIDTH]);
+        }
+    }
     let rows = &mut rows[..R * width];
     for column in from..width {
         let (over_v, over_p) = (lanes.load(&v[column]), lanes.load(&p[column]));
