@@ -50,6 +50,7 @@ mod panel;
 mod part;
 mod pencil;
 mod poll;
+mod product;
 #[cfg(test)]
 #[path = "../tests/operators/shapes.rs"]
 mod shapes;

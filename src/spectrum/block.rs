@@ -2,10 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
-use super::{
-    lanes::{Kernel, Lanes, Row, WIDTH},
-    pencil::Product,
-};
+use super::lanes::{Kernel, Lanes, Row, WIDTH};
 use crate::laplacian::{MassMatrix, Symmetric};
 
 /// Eight by eight numbers, by rows.
@@ -18,51 +15,6 @@ const TILE: usize = 128;
 #[inline(always)]
 pub(super) fn less<L: Lanes>(lanes: L, from: L::Reg, u: &Row, factor: &[L::Reg; WIDTH]) -> L::Reg {
     factor.iter().zip(u).fold(from, |left, (&factor, &value)| lanes.sub_mul(left, lanes.splat(value), factor))
-}
-
-impl Product {
-    /// A row of B x.
-    #[inline(always)]
-    pub(super) fn row<L: Lanes>(&self, lanes: L, x: &[Row], at: usize) -> L::Reg {
-        match self {
-            Self::Unit => lanes.load(&x[at]),
-            Self::Diagonal(values) => lanes.mul(lanes.load(&x[at]), lanes.splat(values[at])),
-            Self::Rows(starts, entries) => {
-                let mut sum = lanes.zero();
-                for entries in &entries[starts[at] as usize..starts[at + 1] as usize] {
-                    for (&column, &value) in entries.columns.iter().zip(&entries.values) {
-                        sum = lanes.add_mul(sum, lanes.splat(value), lanes.load(&x[column as usize]));
-                    }
-                }
-                sum
-            }
-        }
-    }
-}
-
-/// `to = B x`; returns xᵀBx.
-pub(super) struct Multiply<'a> {
-    pub mass: &'a Product,
-    pub x: &'a [Row],
-    pub to: &'a mut [Row],
-}
-
-impl Kernel for Multiply<'_> {
-    type Output = Square;
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, lanes: L) -> Square {
-        let Self { mass, x, to } = self;
-        let mut gram = [lanes.zero(); WIDTH];
-        for (at, (own, to)) in x.iter().zip(to).enumerate() {
-            let sum = mass.row(lanes, x, at);
-            *to = lanes.row(sum);
-            for (gram, &own) in gram.iter_mut().zip(own) {
-                *gram = lanes.add_mul(*gram, lanes.splat(own), sum);
-            }
-        }
-        gram.map(|sum| lanes.row(sum))
-    }
 }
 
 /// Adds Vᵢᵀ t to the i-th square for every block of a basis.

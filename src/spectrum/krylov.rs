@@ -11,12 +11,13 @@ use self::{
 };
 use super::{
     band_reduction::block_eigen,
-    block::{Combine, Dots, Multiply, Residual, Square, Update},
+    block::{Combine, Dots, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
     panel::{Normalise, Panel, Recur, panels},
     pencil::Pencil,
     poll::{Poll, Stop},
+    product::Multiply,
     small::{eigen, identity},
     timings::Cost,
 };

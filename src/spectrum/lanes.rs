@@ -12,7 +12,7 @@
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 #[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d};
+use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _mm_prefetch};
 
 /// Vectors per block.
 pub(super) const WIDTH: usize = 8;
@@ -83,6 +83,8 @@ pub(super) trait Lanes: Copy {
     fn wide_row(self, value: Self::Wide) -> [f32; 16];
     /// `a b + c`
     fn wide_add_mul(self, c: Self::Wide, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// Has these numbers fetched to the first cache, for they are needed soon.
+    fn fetch(self, _values: &[f32; 16]) {}
     /// The first and the last eight in double precision.
     fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
     /// Sixteen rows, rounded to single precision, as eight columns.
@@ -198,6 +200,10 @@ impl Lanes for Avx512 {
         self.0.avx512f._mm512_fmadd_ps(a, b, c)
     }
     #[inline(always)]
+    fn fetch(self, values: &[f32; 16]) {
+        fetch(values);
+    }
+    #[inline(always)]
     fn widen(self, value: __m512) -> [__m512d; 2] {
         let halves: [__m256; 2] = pulp::cast(value);
         halves.map(|half| self.0.avx512f._mm512_cvtps_pd(half))
@@ -299,6 +305,10 @@ impl Lanes for Avx2 {
         [self.0.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
     }
     #[inline(always)]
+    fn fetch(self, values: &[f32; 16]) {
+        fetch(values);
+    }
+    #[inline(always)]
     fn widen(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {
         value.map(|half| self.doubles(half))
     }
@@ -326,6 +336,15 @@ impl Avx2 {
     fn doubles(self, value: __m256) -> [__m256d; 2] {
         let [low, high]: [__m128; 2] = pulp::cast(value);
         [self.0.avx._mm256_cvtps_pd(low), self.0.avx._mm256_cvtps_pd(high)]
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn fetch(values: &[f32; 16]) {
+    #[expect(unsafe_code, reason = "the instruction has no safe name; it changes nothing but what a cache holds")]
+    unsafe {
+        _mm_prefetch::<_MM_HINT_T0>(values.as_ptr().cast());
     }
 }
 

@@ -10,11 +10,11 @@ use std::ops::Range;
 use super::{
     block::{self, Square},
     lanes::{Kernel, Lanes, Row, WIDTH},
-    pencil::Product,
+    product::{GROUP, Product},
 };
 
 /// Rows in a panel.
-pub(super) const ROWS: usize = 16;
+pub(super) const ROWS: usize = GROUP;
 
 /// Sixteen rows of a block, vector by vector.
 #[derive(Debug, Clone, Copy, Default)]
@@ -122,22 +122,22 @@ impl<const N: usize> Kernel for PanelDots<'_, '_, N> {
             for ((tile, right), factor) in tiles.iter_mut().zip(&right).zip(&less) {
                 for (panel, first) in tile[..used].iter_mut().zip(rows.clone().step_by(ROWS)) {
                     let group = &mut group[..ROWS.min(len - first)];
-                    for (to, row) in group.iter_mut().zip(first..) {
-                        let mut sum = right.mass.row(lanes, right.w, row);
-                        if let (Some((u, _)), Some(factor)) = (&right.less, factor) {
-                            sum = block::less(lanes, sum, &u[row], factor);
+                    right.mass.group(lanes, right.w, first / ROWS, group);
+                    if let (Some((u, _)), Some(factor)) = (&right.less, factor) {
+                        for (to, u) in group.iter_mut().zip(&u[first..]) {
+                            *to = lanes.row(block::less(lanes, lanes.load(to), u, factor));
                         }
-                        *to = lanes.row(sum);
                     }
                     panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
                 }
             }
             let range = at * TILE..at * TILE + used;
             for (number, block) in basis.iter().enumerate() {
+                let next = after(basis, number, &range, Some(range.end));
                 let block = &block[range.clone()];
                 for (side, tile) in tiles.iter().enumerate() {
                     let total = &mut room[(side * basis.len() + number) * WIDTH * WIDTH..][..WIDTH * WIDTH];
-                    with_tile(lanes, block, &tile[..used], total);
+                    with_tile(lanes, block, if side == 0 { next } else { &[] }, &tile[..used], total);
                 }
             }
         }
@@ -183,8 +183,10 @@ impl Kernel for Recur<'_, '_> {
                     panel.0 = read(lanes, w).map(|column| lanes.wide_row(column));
                 }
             }
-            for (block, total) in basis.iter().zip(room.chunks_mut(WIDTH * WIDTH)) {
-                with_tile(lanes, &block[at * TILE..at * TILE + used], &tile[..used], total);
+            let range = at * TILE..at * TILE + used;
+            for ((number, block), total) in basis.iter().enumerate().zip(room.chunks_mut(WIDTH * WIDTH)) {
+                let next = after(basis, number, &range, Some(range.end));
+                with_tile(lanes, &block[range.clone()], next, &tile[..used], total);
             }
         }
         totals(room, sums);
@@ -192,17 +194,30 @@ impl Kernel for Recur<'_, '_> {
     }
 }
 
-/// Adds the products of the vectors of a block with those of a tile.
+/// What comes after some panels of a block: the same ones of the next block, and after the last block those of the first
+/// one from `then` on. None of them may be there.
 #[inline(always)]
-fn with_tile<L: Lanes>(lanes: L, block: &[Panel], tile: &[Panel], total: &mut [Row]) {
+fn after<'a>(basis: &[&'a [Panel]], number: usize, range: &Range<usize>, then: Option<usize>) -> &'a [Panel] {
+    match (basis.get(number + 1), then) {
+        (Some(next), _) => &next[range.clone()],
+        (None, Some(then)) => basis[0].get(then..then + range.len()).unwrap_or_default(),
+        (None, None) => &[],
+    }
+}
+
+/// Adds the products of the vectors of a block with those of a tile, and has fetched what comes next.
+#[inline(always)]
+fn with_tile<L: Lanes>(lanes: L, block: &[Panel], next: &[Panel], tile: &[Panel], total: &mut [Row]) {
     if L::MANY {
-        for j in (0..WIDTH).step_by(2) {
-            dots::<L, WIDTH, 2>(lanes, block, tile, (0, j), total);
+        for (part, j) in (0..WIDTH).step_by(2).enumerate() {
+            let quarter = TILE / 4;
+            let next = next.get(part * quarter..(part + 1) * quarter).unwrap_or_default();
+            dots::<L, WIDTH, 2>(lanes, block, next, tile, (0, j), total);
         }
     } else {
         for i in (0..WIDTH).step_by(2) {
             for j in (0..WIDTH).step_by(2) {
-                dots::<L, 2, 2>(lanes, block, tile, (i, j), total);
+                dots::<L, 2, 2>(lanes, block, &[], tile, (i, j), total);
             }
         }
     }
@@ -221,12 +236,18 @@ pub(super) fn totals(room: &[Row], sums: &mut Vec<Square>) {
 fn dots<L: Lanes, const M: usize, const N: usize>(
     lanes: L,
     block: &[Panel],
+    next: &[Panel],
     tile: &[Panel],
     (i, j): (usize, usize),
     total: &mut [Row],
 ) {
     let mut sum = [[lanes.wide_splat(0.0); N]; M];
-    for (x, y) in block.iter().zip(tile) {
+    for (at, (x, y)) in block.iter().zip(tile).enumerate() {
+        // A quarter of a panel for each panel.
+        if let Some(next) = next.get(at / 4) {
+            lanes.fetch(&next.0[at % 4 * 2]);
+            lanes.fetch(&next.0[at % 4 * 2 + 1]);
+        }
         let y: [L::Wide; N] = std::array::from_fn(|at| lanes.wide(&y.0[j + at]));
         for (at, sum) in sum.iter_mut().enumerate() {
             let x = lanes.wide(&x.0[i + at]);
@@ -297,13 +318,14 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
             }
             let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
             for (number, block) in basis.iter().enumerate() {
+                let next = after(basis, number, &range, first.checked_sub(PAGE));
                 let block = &block[range.clone()];
                 for (side, sums) in sums[..sides].iter_mut().enumerate() {
                     let factor = match &*less {
                         Less::Changed { factors: others, .. } if side == 1 => &others[number],
                         _ => &factors[number],
                     };
-                    subtotal(lanes, block, factor, &mut sums[..range.len()]);
+                    subtotal(lanes, block, if side == 0 { next } else { &[] }, factor, &mut sums[..range.len()]);
                 }
             }
             let mut changes = [[[0.0; WIDTH]; ROWS]; 2];
@@ -343,13 +365,18 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
     }
 }
 
-/// Adds the products of a block's panels with a factor to as many panels.
+/// Adds the products of a block's panels with a factor to as many panels, and has fetched what comes next.
 #[inline(always)]
-fn subtotal<L: Lanes>(lanes: L, block: &[Panel], factor: &Single, sums: &mut [Panel]) {
+fn subtotal<L: Lanes>(lanes: L, block: &[Panel], next: &[Panel], factor: &Single, sums: &mut [Panel]) {
     if L::MANY {
         let (pairs, rest) = block.as_chunks::<2>();
         let (to, last) = sums.as_chunks_mut::<2>();
-        for (to, pair) in to.iter_mut().zip(pairs) {
+        for (at, (to, pair)) in to.iter_mut().zip(pairs).enumerate() {
+            for next in next.iter().skip(2 * at).take(2) {
+                for column in &next.0 {
+                    lanes.fetch(column);
+                }
+            }
             update::<L, 2, WIDTH>(lanes, pair, factor, to, 0);
         }
         for (to, one) in last.iter_mut().zip(rest) {

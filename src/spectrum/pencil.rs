@@ -2,7 +2,7 @@
 
 use super::{
     factor::{Symbolic, order},
-    lanes::WIDTH,
+    product::{ByRows, Product},
 };
 use crate::{
     laplacian::{MassMatrix, Symmetric},
@@ -17,26 +17,6 @@ pub(super) struct Pencil {
     pub mass: Product,
     /// The dimension of the kernel of L.
     pub kernel: usize,
-}
-
-/// B by rows, for products with blocks.
-#[derive(Debug)]
-pub(super) enum Product {
-    /// The identity.
-    Unit,
-    /// A diagonal.
-    Diagonal(Vec<f64>),
-    /// Both triangles by rows: where the entries of each row start, and the entries.
-    Rows(Vec<u32>, Vec<Entries>),
-}
-
-/// Eight entries of a row, for the vertices of most meshes have seven. A loop whose length changes from row to row
-/// costs more than the zeros that are multiplied here.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entries {
-    /// Where there is no entry the column is the row's own and the value zero.
-    pub columns: [u32; WIDTH],
-    pub values: [f64; WIDTH],
 }
 
 impl Pencil {
@@ -67,7 +47,7 @@ impl Pencil {
         let mass = match &matrix.mass {
             MassMatrix::Unit => Product::Unit,
             MassMatrix::Diagonal(values) => Product::Diagonal(values.clone()),
-            MassMatrix::Full(values) => by_rows(&matrix, values, pulse)?,
+            MassMatrix::Full(values) => Product::Rows(ByRows::new(&matrix, values, pulse)?),
         };
         pulse.beat(10 * matrix.rows.len())?;
         let kernel = free_parts(&matrix).count;
@@ -138,48 +118,4 @@ pub(super) fn free_parts(matrix: &Symmetric) -> FreeParts {
         of[row] = of[first];
     }
     FreeParts { of, count: count as usize }
-}
-
-fn by_rows(matrix: &Symmetric, values: &[f64], pulse: &Pulse) -> Result<Product, Stopped> {
-    let n = matrix.order();
-    let mut counts = vec![0_u32; n];
-    for column in 0..n {
-        pulse.beat(20)?;
-        for at in matrix.range(column) {
-            let row = matrix.rows[at] as usize;
-            counts[row] += 1;
-            if row != column {
-                counts[column] += 1;
-            }
-        }
-    }
-    let mut starts = Vec::with_capacity(n + 1);
-    let mut entries = Vec::new();
-    for (row, count) in counts.iter_mut().enumerate() {
-        starts.push(entries.len() as u32);
-        pulse.beat(30)?;
-        let none = Entries { columns: [row as u32; WIDTH], values: [0.0; WIDTH] };
-        entries.extend(std::iter::repeat_n(none, count.div_ceil(WIDTH as u32) as usize));
-        *count = 0;
-    }
-    starts.push(entries.len() as u32);
-    let mut put = |row: usize, column: usize, value: f64| {
-        let at = counts[row] as usize;
-        let entries = &mut entries[starts[row] as usize + at / WIDTH];
-        entries.columns[at % WIDTH] = column as u32;
-        entries.values[at % WIDTH] = value;
-        counts[row] += 1;
-    };
-    // By columns of the lower triangle: each row receives its left part in order, then diagonal and right part.
-    for column in 0..n {
-        pulse.beat(40)?;
-        for at in matrix.range(column) {
-            let row = matrix.rows[at] as usize;
-            put(row, column, values[at]);
-            if row != column {
-                put(column, row, values[at]);
-            }
-        }
-    }
-    Ok(Product::Rows(starts, entries))
 }

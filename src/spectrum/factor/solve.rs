@@ -153,7 +153,10 @@ impl<L: Lanes> Columns for ForwardPiece<'_, L> {
         let Self { lanes, x, begin, rows, values } = self;
         let (triangle, values) = values.split_at(W * (W - 1) / 2);
         let own = &mut x[begin..begin + W];
-        let mut solved: [L::Reg; W] = std::array::from_fn(|at| lanes.load(&own[at]));
+        let mut solved = [lanes.zero(); W];
+        for (solved, row) in solved.iter_mut().zip(&*own) {
+            *solved = lanes.load(row);
+        }
         for row in 1..W {
             for column in 0..row {
                 let entry = lanes.splat(triangle[row * (row - 1) / 2 + column]);
@@ -189,8 +192,10 @@ impl<L: Lanes> Columns for BackwardPiece<'_, L> {
         let Self { lanes, x, begin, rows, values, inverse } = self;
         let (triangle, values) = values.split_at(W * (W - 1) / 2);
         let own = &x[begin..begin + W];
-        let inverse = &inverse[..W];
-        let mut sum: [L::Reg; W] = std::array::from_fn(|at| lanes.mul(lanes.load(&own[at]), lanes.splat(inverse[at])));
+        let mut sum = [lanes.zero(); W];
+        for (sum, (row, &inverse)) in sum.iter_mut().zip(own.iter().zip(&inverse[..W])) {
+            *sum = lanes.mul(lanes.load(row), lanes.splat(inverse));
+        }
         for (&row, entries) in rows.iter().zip(values.as_chunks::<W>().0) {
             let row = lanes.load(&x[row as usize]);
             for (sum, &entry) in sum.iter_mut().zip(entries) {

@@ -22,11 +22,11 @@ use std::ops::Range;
 
 use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
-    block::{Dots, Multiply, Square, Update},
+    block::{Dots, Square, Update},
     lanes::{Buffer, Row, WIDTH, dispatch},
     panel::{Less, Panel, PanelDots, PanelUpdate, Right, STRETCH, Single, totals},
-    pencil::Product,
     poll::{Poll, Stop},
+    product::{Multiply, Product},
     timings::Cost,
 };
 
