@@ -21,6 +21,8 @@ pub struct Band {
     pub below: usize,
     /// How many eigenvalues of the piece lie below `upper`.
     pub above: usize,
+    /// How many of its first values the process at its lower end saw; that at its upper end saw the others.
+    pub seen: usize,
     /// Whether it ends early: its values are the first ones of the band that is there when more are asked for.
     pub early: bool,
     /// How many of `values` are the zeros of the kernel.
@@ -40,6 +42,7 @@ impl Band {
             && self.lower < self.upper
             && self.above.checked_sub(self.below) == Some(self.values.len())
             && self.errors.len() == self.values.len()
+            && self.seen <= self.values.len()
             && self.zeros <= self.values.len()
             && self.values[..self.zeros].iter().all(|&value| value == 0.0)
             && ascending

@@ -3,8 +3,8 @@
 //! A band takes three steps. Its upper shift is [placed](Piece::place) by what the band before counts, without looking
 //! at any eigenvalue; a process [looks](Piece::look) at the eigenvalues near that shift; and the band is
 //! [made](Piece::band) of what the processes at its two ends have seen. So processes at several shifts can run at
-//! once ([`team`](super::team)). [`Stretch`](super::window) takes the steps one after
-//! the other.
+//! once ([`team`](super::team)); only at its end a process has to know how much the one below it has seen, for it goes
+//! on until it has seen the rest. [`Stretch`](super::window) takes the steps one after the other.
 
 pub(super) use self::shift::{End, Ending, Shift};
 use super::{
@@ -23,17 +23,23 @@ mod shift;
 /// Eigenvalues that the first slices aim at, so that a few eigenvalues cost little.
 const TARGET: f64 = 54.0;
 /// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
-const WIDE: f64 = 70.0;
+const WIDE: f64 = 87.0;
 /// Eigenvalues that a slice may have before it is made narrower, as a multiple of what it aims at.
 const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
-const BLOCKS: usize = 40;
-/// Blocks after which it looks at its Ritz values for the first time, as many as most processes need between slices of
-/// [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which needs fewer,
-/// for nothing is beyond its left side.
+const BLOCKS: usize = 44;
+/// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
+/// slices of [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which needs
+/// fewer, for nothing is beyond its left side.
 const FIRST_LOOK: usize = 22;
-const PER_BLOCK: f64 = 3.5;
+const PER_BLOCK: f64 = 4.5;
 const LOWEST_LOOK: usize = 18;
+/// A process with b blocks has mostly seen 2 b eigenvalues on each side, but for so many.
+const UNSEEN: usize = 17;
+/// How much of what a process is to see on its right side it has to see. The process above sees the rest.
+const ENOUGH: f64 = 0.9;
+/// What one more block adds to what is seen of a side, as a share of what is wanted.
+const SHARE: f64 = 0.06;
 
 /// How many eigenvalues the slice above so many aims at.
 pub(super) fn target(above: usize) -> f64 {
@@ -133,7 +139,7 @@ impl Piece {
             let Some(above) = self.factor(tools, sigma, poll)? else { continue };
             let near = 1e-6 * half / TARGET;
             let task = Task { sigma, above, left: 0.0, right: Some(half), aim: TARGET, near };
-            match self.process(tools, task, poll) {
+            match self.process(tools, task, &mut |_| Ok(0), poll) {
                 Ok(sides) => {
                     let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
                     return Ok(Some((end, sides.right)));
@@ -159,7 +165,9 @@ impl Piece {
         let before = self.end(&bands[..bands.len() - 1]);
         let (left, right) = (end.upper - before.middle, Some(0.5 * end.step));
         let aim = aim(before.above, end.above);
-        self.process(tools, Task { sigma: end.upper, above: end.above, left, right, aim, near: 0.0 }, poll)
+        let task = Task { sigma: end.upper, above: end.above, left, right, aim, near: 0.0 };
+        let wanted = bands.last().map_or(0, |last| last.values.len() - last.seen);
+        self.process(tools, task, &mut |_| Ok(wanted), poll)
     }
 
     /// Places the shift after an end, and leaves its factor in the tools. `again` is where to try first, and how often
@@ -203,14 +211,16 @@ impl Piece {
     }
 
     /// Looks at the eigenvalues near a shift whose factor is in the tools. No more than `count` eigenvalues are wanted
-    /// in all: that spares work which only bands above need.
+    /// in all: that spares work which only bands above need. `seen` is asked how many eigenvalues of the slice below
+    /// the process before has seen on its right side, so that this one has to see the others only.
     ///
     /// # Errors
-    /// When cancelled, or when an eigenvalue is too near.
+    /// When cancelled, when an eigenvalue is too near, or what `seen` gives.
     pub(super) fn look(
         &self,
         shift: &Shift,
         count: usize,
+        seen: &mut dyn FnMut(&mut Poll) -> Result<usize, Advance>,
         tools: &mut Tools,
         poll: &mut Poll,
     ) -> Result<Sides, Advance> {
@@ -223,7 +233,7 @@ impl Piece {
             aim: aim(below, above),
             near: 1e-6 * (upper - lower) / (above - below).max(1) as f64,
         };
-        self.process(tools, task, poll)
+        self.process(tools, task, &mut |poll| Ok((above - below).saturating_sub(seen(poll)?)), poll)
     }
 
     /// The band below a shift, from the right side of the process at its lower end and the left side of that at the
@@ -247,7 +257,8 @@ impl Piece {
                 .ok_or(Advance::Uncertified { at: upper * self.unit })?,
         };
         sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
-        self.finish(shift, found)
+        let seen = right.found.len().min(total);
+        self.finish(shift, found).map(|band| Band { seen, ..band })
     }
 
     /// The beginning of the band after these, up to σ: the first `count` eigenvalues on the right side of the process
@@ -292,8 +303,15 @@ impl Piece {
         (kind << 62) ^ (u64::from(self.number) << 32) ^ u64::from(place)
     }
 
-    /// Runs Lanczos at a factored shift until both sides reach as far as they are asked to.
-    fn process(&self, tools: &mut Tools, task: Task, poll: &mut Poll) -> Result<Sides, Advance> {
+    /// Runs Lanczos at a factored shift until both sides have come as far as they are asked to. `wanted` says at the
+    /// first look how many eigenvalues are wanted on the left side.
+    fn process(
+        &self,
+        tools: &mut Tools,
+        task: Task,
+        wanted: &mut dyn FnMut(&mut Poll) -> Result<usize, Advance>,
+        poll: &mut Poll,
+    ) -> Result<Sides, Advance> {
         let Task { sigma, above, left, right, aim, near } = task;
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
@@ -303,12 +321,22 @@ impl Piece {
         let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, basis, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
+        let mut needed = None;
+        let enough = ENOUGH * right.unwrap_or(0.0);
         let spacing = (left + right.unwrap_or(left)) / aim;
         let lowest = sigma <= left;
         let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK + ((aim - TARGET) / PER_BLOCK) as usize };
         for blocks in 1..=most {
             krylov.step(poll)?;
             if blocks != most && blocks != look {
+                continue;
+            }
+            let count = match needed {
+                Some(count) => count,
+                None => *needed.insert(wanted(poll)?.min(above)),
+            };
+            if !lowest && blocks != most && 2 * blocks < count + UNSEEN {
+                look = (count + UNSEEN).div_ceil(2);
                 continue;
             }
             let Some(ritz) = krylov.ritz(poll) else { break };
@@ -321,24 +349,23 @@ impl Piece {
             if sides.nearest < near {
                 return Err(Advance::TooNear);
             }
-            // Each side is taken as it is when it has reached far enough, however long the other one takes.
-            if done.left.reach < left && done.left.found.len() < above {
+            // Each side is taken as it is when it has come far enough, however long the other one takes.
+            if done.left.found.len() < count {
                 done.left = sides.left;
             }
-            if right.is_some_and(|right| done.right.reach < right) && done.right.found.len() < beyond {
+            if done.right.reach < enough && done.right.found.len() < beyond {
                 done.right = sides.right;
             }
-            let wanting = |side: &Side, reach: f64, all: usize| side.reach < reach && side.found.len() < all;
-            let share = if wanting(&done.left, left, above) {
-                done.left.reach / left
-            } else if let Some(right) = right.filter(|right| wanting(&done.right, *right, beyond)) {
-                done.right.reach / right
+            let share = if done.left.found.len() < count {
+                done.left.found.len() as f64 / count as f64
+            } else if done.right.reach < enough && done.right.found.len() < beyond {
+                done.right.reach / enough
             } else {
                 break;
             };
             // What is looked at, and when, must not depend on the right side before the left one is done: whether
             // that is wanted depends on how many eigenvalues are asked for.
-            look = blocks + if share < 0.6 { 3 } else { 1 + usize::from(share < 0.85) };
+            look = blocks + ((1.0 - share) / SHARE).round().max(1.0) as usize;
         }
         Ok(done)
     }
@@ -366,6 +393,7 @@ impl Piece {
             upper: if above == self.pencil.order() { f64::MAX } else { upper * self.unit },
             below,
             above,
+            seen: 0,
             early: false,
             zeros,
             values: found.iter().map(|found| found.value * self.unit).collect(),
@@ -385,9 +413,9 @@ struct Task {
     sigma: f64,
     /// Eigenvalues below σ.
     above: usize,
-    /// How far it is to see on its left side.
+    /// How far from σ the middle of the slice below it is.
     left: f64,
-    /// How far it is to see on its right side, if that is wanted.
+    /// The same of the slice above it, if its right side is wanted.
     right: Option<f64>,
     /// How many eigenvalues there may be on both sides.
     aim: f64,
@@ -400,7 +428,11 @@ struct Task {
 pub(super) enum Advance {
     Cancelled,
     TooNear,
-    Uncertified { at: f64 },
+    /// Another process has to come first.
+    Deferred,
+    Uncertified {
+        at: f64,
+    },
 }
 
 impl From<Stop> for Advance {

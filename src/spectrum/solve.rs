@@ -120,6 +120,7 @@ fn small_pieces(
         upper: f64::MAX,
         below: 0,
         above: rows,
+        seen: 0,
         early: false,
         zeros: all.iter().take_while(|found| found.value == 0.0).count(),
         values: all.iter().map(|found| found.value * unit).collect(),

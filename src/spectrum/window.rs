@@ -46,7 +46,7 @@ fn cancelled() -> SpectrumError {
 fn refused(advance: Advance, start: f64) -> SpectrumError {
     match advance {
         Advance::Cancelled => cancelled(),
-        Advance::TooNear => SpectrumError::Uncertified { at: start, finished: Vec::new() },
+        Advance::TooNear | Advance::Deferred => SpectrumError::Uncertified { at: start, finished: Vec::new() },
         Advance::Uncertified { at } => SpectrumError::Uncertified { at, finished: Vec::new() },
     }
 }
@@ -252,7 +252,7 @@ impl<'a> Stretch<'a> {
         let mut again = None;
         let (shift, sides) = loop {
             let shift = self.piece.place(&self.end, again, tools, poll)?;
-            match self.piece.look(&shift, usize::MAX, tools, poll) {
+            match self.piece.look(&shift, usize::MAX, &mut |_| Ok(self.right.found.len()), tools, poll) {
                 Ok(sides) => break (shift, sides),
                 Err(Advance::TooNear) => again = Some(shift.moved()),
                 Err(other) => return Err(other),

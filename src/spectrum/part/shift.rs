@@ -11,7 +11,7 @@ pub(in crate::spectrum) struct End {
     pub(super) above: usize,
     /// How far the next shift is to be from it.
     pub(super) step: f64,
-    /// Where the right side of the process at the last shift gives over to the left side of the one at the next.
+    /// Half way to the next shift.
     pub(super) middle: f64,
 }
 

@@ -1,8 +1,10 @@
 //! What a thread does for a team, and how it gives that up.
 
-use super::{Place, Slot, Stage, State, Team, Work};
+use std::sync::PoisonError;
+
+use super::{NAP, Place, Slot, Stage, State, Team, Work};
 use crate::spectrum::{
-    part::{Advance, End, Tools},
+    part::{Advance, End, Shift, Tools},
     poll::Poll,
     slice::{Side, Sides},
 };
@@ -37,19 +39,19 @@ impl Team {
                 self.changed.notify_all();
                 let Place::Shift(shift) = place else { return Ok(()) };
                 undo.what = Some(Undone::Run(at, number));
-                let looked = self.pieces[at].look(&shift, self.count, tools, poll);
+                let looked = self.look(at, number, &shift, tools, poll);
                 self.store(at, number, looked, &mut undo)
             }
             Work::Run(at, number, place) => {
                 undo.what = Some(Undone::Run(at, number));
-                let piece = &self.pieces[at];
                 let looked = match place {
                     Place::Shift(shift) => {
-                        piece.return_to(&shift, tools, poll).and_then(|()| piece.look(&shift, self.count, tools, poll))
+                        let returned = self.pieces[at].return_to(&shift, tools, poll);
+                        returned.and_then(|()| self.look(at, number, &shift, tools, poll))
                     }
                     Place::Again => {
                         let bands = self.state().chains[at].bands.clone();
-                        piece.resume(&bands, tools, poll)
+                        self.pieces[at].resume(&bands, tools, poll)
                     }
                     Place::Nowhere => return Ok(()),
                 };
@@ -62,6 +64,42 @@ impl Team {
             Work::End(at, ending) => {
                 undo.what = Some(Undone::End(at));
                 self.end_at(at, ending, tools, poll, &mut undo)
+            }
+        }
+    }
+
+    /// Runs the process of a slot, at a shift whose factor is in the tools.
+    fn look(
+        &self,
+        at: usize,
+        number: u64,
+        shift: &Shift,
+        tools: &mut Tools,
+        poll: &mut Poll,
+    ) -> Result<Sides, Advance> {
+        self.pieces[at].look(shift, self.count, &mut |poll| self.seen(at, number, poll), tools, poll)
+    }
+
+    /// What is seen on the right side of the process before a slot. Waits for it while another thread runs that.
+    ///
+    /// # Errors
+    /// When cancelled, or when no thread runs that process: this thread might be the only one.
+    fn seen(&self, at: usize, number: u64, poll: &Poll) -> Result<usize, Advance> {
+        loop {
+            let mut state = self.state();
+            let chain = &mut state.chains[at];
+            let Some(place) = chain.take(number) else { return Err(Advance::Deferred) };
+            let Some(before) = place.checked_sub(1) else {
+                return Ok(chain.right(chain.bands.len()).map_or(0, |right| right.found.len()));
+            };
+            match &chain.slots[before].stage {
+                Stage::Done(sides) => return Ok(sides.right.found.len()),
+                Stage::Running | Stage::Making => {}
+                Stage::Open | Stage::Failed(_) => return Err(Advance::Deferred),
+            }
+            drop(self.changed.wait_timeout(state, NAP).unwrap_or_else(PoisonError::into_inner));
+            if poll.watch().cancelled() {
+                return Err(Advance::Cancelled);
             }
         }
     }
@@ -88,6 +126,8 @@ impl Team {
             Err(Advance::TooNear) => None,
             Err(Advance::Uncertified { at }) => Some(Stage::Failed(at)),
             Err(Advance::Cancelled) => return Err(Advance::Cancelled),
+            // Giving it up opens the slot again.
+            Err(Advance::Deferred) => return Ok(()),
         };
         undo.what = None;
         let mut state = self.state();
@@ -147,7 +187,7 @@ impl Team {
             Err(error) => {
                 chain.failed = Some(match error {
                     Advance::Uncertified { at } => at,
-                    Advance::TooNear | Advance::Cancelled => chain.placed(self.pieces[at].unit).0,
+                    Advance::TooNear | Advance::Deferred | Advance::Cancelled => chain.placed(self.pieces[at].unit).0,
                 });
                 chain.slots.clear();
             }
