@@ -78,8 +78,9 @@ pub(super) struct Ritz {
 /// How a basis is kept.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Basis<'a> {
-    /// In single precision: half the bytes, for eigenvalues alone.
-    Single,
+    /// In single precision: half the bytes, for eigenvalues alone, of which those are wanted that are so near to the
+    /// shift.
+    Single { reach: f64 },
     /// In double precision, and orthogonal to these vectors, in whole blocks: for eigenvectors, and where the basis
     /// comes to hold much of the space.
     Double(&'a [Buffer]),
@@ -88,7 +89,7 @@ pub(super) enum Basis<'a> {
 impl<'a> Basis<'a> {
     fn locked(self) -> &'a [Buffer] {
         match self {
-            Self::Single => &[],
+            Self::Single { .. } => &[],
             Self::Double(locked) => locked,
         }
     }
@@ -149,7 +150,7 @@ impl<'a> Krylov<'a> {
             basis,
             alpha: Vec::new(),
             beta: Vec::new(),
-            losses: Losses::default(),
+            losses: Losses::new(sigma, basis),
             lost: Vec::new(),
             wrong: [0.0; WIDTH],
             symmetric: true,
@@ -233,7 +234,7 @@ impl<'a> Krylov<'a> {
     /// along the newest, which are left for [`orthogonalise`](Self::orthogonalise) to take out, and along the first
     /// blocks, if that is all it has to look at.
     fn recur(&mut self) -> (Square, Vec<Square>) {
-        let few = matches!(self.basis, Basis::Single) && self.blocks() > FIRST + 1 && !self.due();
+        let few = matches!(self.basis, Basis::Single { .. }) && self.blocks() > FIRST + 1 && !self.due();
         let Scratch { past, work, newest, images, room, .. } = &mut *self.scratch;
         let (mut along, mut seen) = ([Square::default()], Vec::new());
         if let Some(beta) = self.beta.last() {
@@ -271,7 +272,7 @@ impl<'a> Krylov<'a> {
             list[at].resize(count, Panel::default());
         };
         let mut single: [&mut [Panel]; 2] = [&mut [], &mut []];
-        if matches!(self.basis, Basis::Single) {
+        if matches!(self.basis, Basis::Single { .. }) {
             room(blocks);
             single[0] = &mut blocks[at];
             if at < FIRST {
@@ -362,7 +363,7 @@ impl<'a> Krylov<'a> {
         poll.charge(Cost::Rest);
         let Scratch { small, tails, .. } = &mut *self.scratch;
         let theta = match self.basis {
-            Basis::Single => block_eigen(&self.alpha, &self.beta, tails)?,
+            Basis::Single { .. } => block_eigen(&self.alpha, &self.beta, tails)?,
             Basis::Double(_) => {
                 let n = blocks * WIDTH;
                 projected(&self.alpha, &self.beta, &self.lost, small);

@@ -138,7 +138,7 @@ impl Piece {
             }
             let Some(above) = self.factor(tools, sigma, poll)? else { continue };
             let near = 1e-6 * half / TARGET;
-            let task = Task { sigma, above, left: 0.0, right: Some(half), aim: TARGET, near };
+            let task = Task { sigma, above, left: 0.0, right: half, both: true, aim: TARGET, near };
             match self.process(tools, task, &mut |_| Ok(0), poll) {
                 Ok(sides) => {
                     let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
@@ -163,9 +163,9 @@ impl Piece {
             return Err(Advance::Uncertified { at: end.upper * self.unit });
         }
         let before = self.end(&bands[..bands.len() - 1]);
-        let (left, right) = (end.upper - before.middle, Some(0.5 * end.step));
+        let (left, right) = (end.upper - before.middle, 0.5 * end.step);
         let aim = aim(before.above, end.above);
-        let task = Task { sigma: end.upper, above: end.above, left, right, aim, near: 0.0 };
+        let task = Task { sigma: end.upper, above: end.above, left, right, both: true, aim, near: 0.0 };
         let wanted = bands.last().map_or(0, |last| last.values.len() - last.seen);
         self.process(tools, task, &mut |_| Ok(wanted), poll)
     }
@@ -229,7 +229,8 @@ impl Piece {
             sigma: upper,
             above,
             left: upper - middle,
-            right: (above < count).then_some(0.5 * shift.end().step),
+            right: 0.5 * shift.end().step,
+            both: above < count,
             aim: aim(below, above),
             near: 1e-6 * (upper - lower) / (above - below).max(1) as f64,
         };
@@ -312,18 +313,19 @@ impl Piece {
         wanted: &mut dyn FnMut(&mut Poll) -> Result<usize, Advance>,
         poll: &mut Poll,
     ) -> Result<Sides, Advance> {
-        let Task { sigma, above, left, right, aim, near } = task;
+        let Task { sigma, above, left, right, both, aim, near } = task;
         let beyond = self.pencil.order() - above;
         let seed = sigma.to_bits().rotate_left(17) ^ u64::from(self.number);
         let Tools { factor, scratch, .. } = tools;
         poll.meter.timings.processes += 1;
-        let basis = if self.pencil.order() < FEW_ROWS { Basis::Double(&[]) } else { Basis::Single };
+        let basis =
+            if self.pencil.order() < FEW_ROWS { Basis::Double(&[]) } else { Basis::Single { reach: left.max(right) } };
         let mut krylov = Krylov::start(&self.pencil, factor, sigma, seed, basis, scratch, poll)?;
         let most = BLOCKS.min((self.pencil.order() - 1) / WIDTH);
         let mut done = Sides::default();
         let mut needed = None;
-        let enough = ENOUGH * right.unwrap_or(0.0);
-        let spacing = (left + right.unwrap_or(left)) / aim;
+        let enough = if both { ENOUGH * right } else { 0.0 };
+        let spacing = (left + right) / aim;
         let lowest = sigma <= left;
         let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK + ((aim - TARGET) / PER_BLOCK) as usize };
         for blocks in 1..=most {
@@ -415,8 +417,10 @@ struct Task {
     above: usize,
     /// How far from σ the middle of the slice below it is.
     left: f64,
-    /// The same of the slice above it, if its right side is wanted.
-    right: Option<f64>,
+    /// The same of the slice above it.
+    right: f64,
+    /// Whether its right side is wanted.
+    both: bool,
     /// How many eigenvalues there may be on both sides.
     aim: f64,
     /// An eigenvalue nearer than this moves the shift.

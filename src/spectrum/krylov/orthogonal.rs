@@ -37,8 +37,11 @@ pub(super) const FIRST: usize = 3;
 /// What a pass in single precision leaves of orthogonality.
 const FLOOR: f64 = 5e-9;
 
-/// How far the newest block may be from orthogonal when the next one is made without looking at the basis.
-const SLIGHT: f64 = 5e-7;
+/// How far the newest block may be from orthogonal when the next one is made without looking at the basis, where the
+/// eigenvalues that are wanted reach as far from the shift as zero does. Its square times a few 1/h is what the projected
+/// operator may be off by for eigenvalues at the distance h, and so that times h² what λ may be: with h small beside the
+/// shift σ the error relative to λ is small, and h/σ times the square of what is lost stays the same.
+const SLIGHT: f64 = 4e-7;
 
 /// How far a block may be from orthogonal to stay in the basis.
 const MOST: f64 = 1e-4;
@@ -46,6 +49,8 @@ const MOST: f64 = 1e-4;
 /// How far the blocks of a basis are from orthogonal to those before them, but for the first ones.
 #[derive(Debug, Default)]
 pub(super) struct Losses {
+    /// How far the newest block may be off.
+    slight: f64,
     /// The newest block and the one before it, as estimated.
     newest: f64,
     before: f64,
@@ -59,9 +64,18 @@ pub(super) struct Losses {
 }
 
 impl Losses {
+    /// Nothing is lost yet.
+    pub(super) fn new(sigma: f64, basis: Basis) -> Self {
+        let slight = match basis {
+            Basis::Single { reach } => SLIGHT * (sigma / reach).max(1.0).sqrt(),
+            Basis::Double(_) => SLIGHT,
+        };
+        Self { slight, ..Self::default() }
+    }
+
     /// Whether the next step has to look at the whole basis.
     fn due(&self) -> bool {
-        self.newest > SLIGHT
+        self.newest > self.slight
     }
 
     /// What a step loses with couplings of these norms along the basis and to the block before the newest, and so
@@ -134,8 +148,8 @@ impl Krylov<'_> {
                 self.lost.push(lost);
                 None
             }
-            Basis::Single if self.due() => Some(self.pair(along, poll)?),
-            Basis::Single => {
+            Basis::Single { .. } if self.due() => Some(self.pair(along, poll)?),
+            Basis::Single { .. } => {
                 let count = older.min(FIRST);
                 let Scratch { blocks, images, now, work, room, .. } = &mut *self.scratch;
                 let mut sums = seen;
@@ -207,7 +221,7 @@ impl Krylov<'_> {
         let len = work.rows().len();
         let mut sums = Vec::new();
         match self.basis {
-            Basis::Single => {
+            Basis::Single { .. } => {
                 let basis = panels(&basis[..blocks.saturating_sub(1)]);
                 let right = [Right { mass: &self.pencil.mass, w: work.rows(), less: None }];
                 sums = products(&basis, right, room, poll)?;

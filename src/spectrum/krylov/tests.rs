@@ -20,7 +20,7 @@ fn factored(mesh: &Mesh, sigma: f64) -> (Pencil, Factor) {
 fn rows(krylov: &Krylov, block: usize) -> Vec<Row> {
     match krylov.basis {
         Basis::Double(_) => krylov.scratch.exact[block].rows().to_vec(),
-        Basis::Single => {
+        Basis::Single { .. } => {
             let panels = &krylov.scratch.blocks[block];
             let rows = 0..krylov.pencil.order();
             rows.map(|at| panels[at / ROWS].0.map(|column| f64::from(column[at % ROWS]))).collect()
@@ -62,7 +62,7 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
         let vectors = matches!(basis, Basis::Double(_)).then(|| krylov.vectors(&ritz[..40]).unwrap());
         (ritz, vectors.unwrap_or_default(), defect(&krylov))
     };
-    let (single, _, rounded) = run(Basis::Single);
+    let (single, _, rounded) = run(Basis::Single { reach: sigma });
     let (ritz, vectors, defect) = run(Basis::Double(&[]));
     assert!(defect < 1e-12, "{defect:e}");
     // So much may be lost; the projected operator feels its square.
@@ -96,7 +96,8 @@ fn the_basis_is_orthonormal_and_the_residuals_are_true() {
 fn dependent_columns_are_replaced() {
     let (pencil, factor) = factored(&shapes::rectangle(20, 20), 50.0);
     let (mut poll, mut scratch) = (Poll::new(&Unwatched), Scratch::default());
-    let mut krylov = Krylov::start(&pencil, &factor, 50.0, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
+    let mut krylov =
+        Krylov::start(&pencil, &factor, 50.0, 5, Basis::Single { reach: 50.0 }, &mut scratch, &mut poll).unwrap();
     for row in krylov.scratch.work.rows_mut() {
         row[3] = 2.0 * row[1] - row[0];
         row[7] = 0.0;
@@ -143,7 +144,8 @@ fn few_steps_look_at_the_whole_basis_and_neighbours_stay_orthogonal() {
     let sigma = 321.0;
     let (pencil, factor) = factored(&shapes::rectangle(60, 41), sigma);
     let (mut poll, mut scratch) = (Poll::new(&Unwatched), Scratch::default());
-    let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
+    let mut krylov =
+        Krylov::start(&pencil, &factor, sigma, 5, Basis::Single { reach: sigma }, &mut scratch, &mut poll).unwrap();
     let mut passes = Vec::new();
     let mut exact: Vec<Vec<Row>> = Vec::new();
     while krylov.blocks() < 24 {
@@ -184,7 +186,8 @@ fn a_block_that_is_mended_leaves_no_trace() {
     let (pencil, factor) = factored(&shapes::rectangle(60, 41), sigma);
     let (mut poll, mut scratch) = (Poll::new(&Unwatched), Scratch::default());
     let mut run = |spoil: f64| {
-        let mut krylov = Krylov::start(&pencil, &factor, sigma, 5, Basis::Single, &mut scratch, &mut poll).unwrap();
+        let mut krylov =
+            Krylov::start(&pencil, &factor, sigma, 5, Basis::Single { reach: sigma }, &mut scratch, &mut poll).unwrap();
         while krylov.blocks() < 22 {
             if krylov.blocks() == 12 && spoil != 0.0 {
                 // As if it had never been orthogonal to an older block.
