@@ -32,7 +32,7 @@ const WARMING: usize = 3;
 
 /// How much of each column must be independent of the columns before it in a block that stays (by Cholesky's
 /// decomposition Q is orthonormal to rounding over that), and in one that is only to be multiplied again.
-const STRICTLY: f64 = 2e-2;
+const STRICTLY: f64 = 1e-2;
 const ROUGHLY: f64 = 1e-9;
 
 /// Decompositions of a block after which it is taken as it is.

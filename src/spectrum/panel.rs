@@ -77,8 +77,8 @@ impl Kernel for Normalise<'_> {
     }
 }
 
-/// Panels of both factors that stay in the first cache.
-const TILE: usize = 16;
+/// Panels of both factors that stay in a near cache.
+const TILE: usize = 32;
 
 /// `B w`, or `B w − U M` if such a pair is given.
 #[derive(Clone, Copy)]
