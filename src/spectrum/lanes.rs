@@ -83,7 +83,7 @@ pub(super) trait Lanes: Copy {
     fn wide_row(self, value: Self::Wide) -> [f32; 16];
     /// `a b + c`
     fn wide_add_mul(self, c: Self::Wide, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// Has these numbers fetched to the first cache, for they are needed soon.
+    /// Has these numbers fetched to the first cache, for they are needed soon, where [`MANY`](Self::MANY).
     fn fetch(self, _values: &[f32; 16]) {}
     /// The first and the last eight in double precision.
     fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
@@ -303,10 +303,6 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn wide_add_mul(self, c: [__m256; 2], a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
         [self.0.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
-    }
-    #[inline(always)]
-    fn fetch(self, values: &[f32; 16]) {
-        fetch(values);
     }
     #[inline(always)]
     fn widen(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {

@@ -194,8 +194,8 @@ impl Kernel for Recur<'_, '_> {
     }
 }
 
-/// What comes after some panels of a block: the same ones of the next block, and after the last block those of the first
-/// one from `then` on. None of them may be there.
+/// What comes after some panels of a block: the same ones of the next block, and after the last block those of the
+/// first one from `then` on. None of them may be there.
 #[inline(always)]
 fn after<'a>(basis: &[&'a [Panel]], number: usize, range: &Range<usize>, then: Option<usize>) -> &'a [Panel] {
     match (basis.get(number + 1), then) {

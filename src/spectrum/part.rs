@@ -29,8 +29,8 @@ const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 44;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
-/// slices of [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which needs
-/// fewer, for nothing is beyond its left side.
+/// slices of [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which
+/// needs fewer, for nothing is beyond its left side.
 const FIRST_LOOK: usize = 22;
 const PER_BLOCK: f64 = 4.5;
 const LOWEST_LOOK: usize = 18;

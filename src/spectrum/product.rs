@@ -25,8 +25,8 @@ pub(super) enum Product {
     Rows(ByRows),
 }
 
-/// A matrix by rows, in pieces of eight entries, for the vertices of most meshes have seven. A loop whose length changes
-/// from row to row costs more than the zeros that are multiplied here.
+/// A matrix by rows, in pieces of eight entries, for the vertices of most meshes have seven. A loop whose length
+/// changes from row to row costs more than the zeros that are multiplied here.
 #[derive(Debug)]
 pub(super) struct ByRows {
     /// The first entries of each row.

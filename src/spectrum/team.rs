@@ -2,8 +2,8 @@
 //!
 //! The shifts of a chain are placed one after the other, which takes a factorisation each; the processes at them are
 //! ten times dearer, and run at once; before it ends, each waits for what the one below it has seen. What is made of
-//! them is joined in the order of the chain, so that every band is the same bits as on one thread. Which bands belong to the answer is decided by the rule that one thread follows;
-//! what was solved beyond them is dropped.
+//! them is joined in the order of the chain, so that every band is the same bits as on one thread. Which bands belong
+//! to the answer is decided by the rule that one thread follows; what was solved beyond them is dropped.
 
 use std::{
     collections::VecDeque,

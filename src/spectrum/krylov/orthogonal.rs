@@ -38,9 +38,9 @@ pub(super) const FIRST: usize = 3;
 const FLOOR: f64 = 5e-9;
 
 /// How far the newest block may be from orthogonal when the next one is made without looking at the basis, where the
-/// eigenvalues that are wanted reach as far from the shift as zero does. Its square times a few 1/h is what the projected
-/// operator may be off by for eigenvalues at the distance h, and so that times h² what λ may be: with h small beside the
-/// shift σ the error relative to λ is small, and h/σ times the square of what is lost stays the same.
+/// eigenvalues that are wanted reach as far from the shift σ as zero does. By its square s² times a few 1/h the
+/// projected operator may be off, if h is the farthest of their distances, and λ there by that times h². Relative to λ
+/// this is a few s² h/σ: where h is smaller beside σ, as in all slices but the lowest, more may be lost for the same.
 const SLIGHT: f64 = 4e-7;
 
 /// How far a block may be from orthogonal to stay in the basis.
