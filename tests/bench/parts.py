@@ -9,7 +9,8 @@ process, taken as equally long:
     orthogonalisation  4·64 n flops in single precision for each pair of a new block and an older one, whose 32 n bytes
                        are read twice, for two new blocks at a time or one; and in each step 6·64 n flops of the
                        recurrence in double precision, which count twice, and seven blocks read or written
-    products           2·8 flops an entry of B; B's 12 bytes an entry and the block read, one written
+    products           one a solve: 2·8 flops an entry of B, of which 8 are stored for a row; B's 12 bytes an entry
+                       and the block read, one written
 
 What is not counted (dense eigenproblems, orthonormal bases of blocks, assembly, ordering) is shown by time alone. The
 bandwidth that a part is held against is that of arrays as large as what it goes through again and again.
@@ -32,9 +33,7 @@ def counted(told):
     n, entries, solves, processes = told["order"], told["entries"], told["solves"], max(told["processes"], 1)
     block = 8 * n * WIDTH
     blocks = solves / processes
-    # About 7 entries in a row of B on a closed triangle mesh.
-    mass = 7 * n
-    products = 2 * solves
+    mass = 8 * n
     return {
         "factorisation": (
             2 * told["multiplications"] * told["factorisations"],
@@ -47,7 +46,7 @@ def counted(told):
             block * (told["passed"] + 7 * solves),
             block // 2 * blocks,
         ),
-        "products": (2 * WIDTH * mass * products, (12 * mass + 2 * block) * products, 12 * mass + 2 * block),
+        "products": (2 * WIDTH * mass * solves, (12 * mass + 2 * block) * solves, 12 * mass + 2 * block),
     }
 
 
