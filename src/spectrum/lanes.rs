@@ -338,7 +338,8 @@ impl Avx2 {
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn fetch(values: &[f32; 16]) {
-    #[expect(unsafe_code, reason = "the instruction has no safe name; it changes nothing but what a cache holds")]
+    #[expect(unsafe_code, reason = "the instruction has no safe name")]
+    // SAFETY: it may be given any address, and changes nothing but what a cache holds.
     unsafe {
         _mm_prefetch::<_MM_HINT_T0>(values.as_ptr().cast());
     }

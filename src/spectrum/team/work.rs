@@ -94,8 +94,10 @@ impl Team {
             };
             match &chain.slots[before].stage {
                 Stage::Done(sides) => return Ok(sides.right.found.len()),
+                // The chain ends there, and what is above it will be dropped.
+                Stage::Failed(_) => return Ok(0),
                 Stage::Running | Stage::Making => {}
-                Stage::Open | Stage::Failed(_) => return Err(Advance::Deferred),
+                Stage::Open => return Err(Advance::Deferred),
             }
             drop(self.changed.wait_timeout(state, NAP).unwrap_or_else(PoisonError::into_inner));
             if poll.watch().cancelled() {

@@ -39,6 +39,14 @@ impl Sides {
     }
 }
 
+/// What is parted, and how many rows a side may have.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub graph: &'a Graph,
+    pub limit: u32,
+    pub pulse: &'a Pulse<'a>,
+}
+
 /// What a refinement needs to remember; kept for its memory.
 #[derive(Debug, Default)]
 pub(super) struct Refiner {
@@ -58,37 +66,24 @@ impl Refiner {
     ///
     /// # Errors
     /// When the watch cancels.
-    pub(super) fn refine(
-        &mut self,
-        graph: &Graph,
-        sides: &mut Sides,
-        cut: &mut Vec<u32>,
-        limit: u32,
-        pulse: &Pulse,
-    ) -> Result<(), Stopped> {
-        let n = graph.len();
+    pub(super) fn refine(&mut self, task: Task, sides: &mut Sides, cut: &mut Vec<u32>) -> Result<(), Stopped> {
+        let n = task.graph.len();
         if self.moved.len() < n {
             self.moved.resize(n, 0);
             self.pulled.resize(n, [0; 2]);
         }
         for _ in 0..PASSES {
-            let before = sides.cost(limit);
-            self.pass(graph, sides, cut, limit, pulse)?;
-            if sides.cost(limit) >= before {
+            let before = sides.cost(task.limit);
+            self.pass(task, sides, cut)?;
+            if sides.cost(task.limit) >= before {
                 break;
             }
         }
         Ok(())
     }
 
-    fn pass(
-        &mut self,
-        graph: &Graph,
-        sides: &mut Sides,
-        cut: &mut Vec<u32>,
-        limit: u32,
-        pulse: &Pulse,
-    ) -> Result<(), Stopped> {
+    fn pass(&mut self, task: Task, sides: &mut Sides, cut: &mut Vec<u32>) -> Result<(), Stopped> {
+        let Task { graph, limit, pulse } = task;
         self.pass += 1;
         self.log.clear();
         self.moves.iter_mut().for_each(BinaryHeap::clear);

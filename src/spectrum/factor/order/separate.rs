@@ -2,7 +2,7 @@
 
 use super::{
     coarse::Graph,
-    refine::{CUT, Refiner, Sides},
+    refine::{CUT, Refiner, Sides, Task},
 };
 use crate::watch::{Pulse, Stopped};
 
@@ -48,7 +48,7 @@ pub(super) fn separate(graph: &Graph, refiner: &mut Refiner, pulse: &Pulse) -> R
         let side = (0..).zip(&place).map(of_place).collect();
         sides.side = side;
         pulse.beat(2 * place.len())?;
-        refiner.refine(finer, &mut sides, &mut cut, limit, pulse)?;
+        refiner.refine(Task { graph: finer, limit, pulse }, &mut sides, &mut cut)?;
     }
     Ok(sides)
 }
@@ -67,7 +67,7 @@ fn start(
     let tries = if n <= 4 * COARSEST { TRIES } else { 1 };
     for at in 0..tries {
         let (mut sides, mut cut) = grow(graph, total, (n * at / tries) as u32, pulse)?;
-        refiner.refine(graph, &mut sides, &mut cut, limit, pulse)?;
+        refiner.refine(Task { graph, limit, pulse }, &mut sides, &mut cut)?;
         if best.as_ref().is_none_or(|(best, _)| sides.cost(limit) < best.cost(limit)) {
             best = Some((sides, cut));
         }
