@@ -12,7 +12,7 @@
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 #[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _mm_prefetch};
+use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
 
 /// Vectors per block.
 pub(super) const WIDTH: usize = 8;
@@ -85,6 +85,8 @@ pub(super) trait Lanes: Copy {
     fn wide_add_mul(self, c: Self::Wide, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// Has these numbers fetched to the first cache, for they are needed soon, where [`MANY`](Self::MANY).
     fn fetch(self, _values: &[f32; 16]) {}
+    /// The same for the second cache, where there is room for more.
+    fn fetch_near(self, _values: &[f32; 16]) {}
     /// The first and the last eight in double precision.
     fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
     /// Sixteen rows, rounded to single precision, as eight columns.
@@ -201,7 +203,11 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn fetch(self, values: &[f32; 16]) {
-        fetch(values);
+        fetch::<_MM_HINT_T0>(values);
+    }
+    #[inline(always)]
+    fn fetch_near(self, values: &[f32; 16]) {
+        fetch::<_MM_HINT_T1>(values);
     }
     #[inline(always)]
     fn widen(self, value: __m512) -> [__m512d; 2] {
@@ -337,11 +343,11 @@ impl Avx2 {
 
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn fetch(values: &[f32; 16]) {
+fn fetch<const HINT: i32>(values: &[f32; 16]) {
     #[expect(unsafe_code, reason = "the instruction has no safe name")]
     // SAFETY: it may be given any address, and changes nothing but what a cache holds.
     unsafe {
-        _mm_prefetch::<_MM_HINT_T0>(values.as_ptr().cast());
+        _mm_prefetch::<HINT>(values.as_ptr().cast());
     }
 }
 

@@ -245,8 +245,8 @@ fn dots<L: Lanes, const M: usize, const N: usize>(
     for (at, (x, y)) in block.iter().zip(tile).enumerate() {
         // A quarter of a panel for each panel.
         if let Some(next) = next.get(at / 4) {
-            lanes.fetch(&next.0[at % 4 * 2]);
-            lanes.fetch(&next.0[at % 4 * 2 + 1]);
+            lanes.fetch_near(&next.0[at % 4 * 2]);
+            lanes.fetch_near(&next.0[at % 4 * 2 + 1]);
         }
         let y: [L::Wide; N] = std::array::from_fn(|at| lanes.wide(&y.0[j + at]));
         for (at, sum) in sum.iter_mut().enumerate() {
@@ -317,15 +317,28 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
                 sums[..range.len()].fill(Panel::default());
             }
             let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
-            for (number, block) in basis.iter().enumerate() {
-                let next = after(basis, number, &range, first.checked_sub(PAGE));
-                let block = &block[range.clone()];
+            // Two blocks at a time, so that sums are loaded and stored half as often.
+            for number in (0..basis.len()).step_by(2) {
+                let next = |number| after(basis, number, &range, first.checked_sub(PAGE));
+                let (one, other) =
+                    (&basis[number][range.clone()], basis.get(number + 1).map(|block| &block[range.clone()]));
                 for (side, sums) in sums[..sides].iter_mut().enumerate() {
-                    let factor = match &*less {
-                        Less::Changed { factors: others, .. } if side == 1 => &others[number],
-                        _ => &factors[number],
+                    let factors = match &*less {
+                        Less::Changed { factors: others, .. } if side == 1 => *others,
+                        _ => factors,
                     };
-                    subtotal(lanes, block, if side == 0 { next } else { &[] }, factor, &mut sums[..range.len()]);
+                    let sums = &mut sums[..range.len()];
+                    match other {
+                        Some(other) => {
+                            let next = if side == 0 { [next(number + 1), next(number + 2)] } else { [&[][..]; 2] };
+                            let factors = [&factors[number], &factors[number + 1]];
+                            subtotal(lanes, [one, other], next, factors, sums);
+                        }
+                        None => {
+                            let next = if side == 0 { next(number) } else { &[] };
+                            subtotal(lanes, [one], [next], [&factors[number]], sums);
+                        }
+                    }
                 }
             }
             let mut changes = [[[0.0; WIDTH]; ROWS]; 2];
@@ -365,49 +378,62 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
     }
 }
 
-/// Adds the products of a block's panels with a factor to as many panels, and has fetched what comes next.
+/// Adds the products of the panels of some blocks with their factors to as many panels, and has fetched what comes next.
 #[inline(always)]
-fn subtotal<L: Lanes>(lanes: L, block: &[Panel], next: &[Panel], factor: &Single, sums: &mut [Panel]) {
+fn subtotal<L: Lanes, const B: usize>(
+    lanes: L,
+    blocks: [&[Panel]; B],
+    next: [&[Panel]; B],
+    factors: [&Single; B],
+    sums: &mut [Panel],
+) {
+    let mut at = 0;
     if L::MANY {
-        let (pairs, rest) = block.as_chunks::<2>();
-        let (to, last) = sums.as_chunks_mut::<2>();
-        for (at, (to, pair)) in to.iter_mut().zip(pairs).enumerate() {
-            for next in next.iter().skip(2 * at).take(2) {
-                for column in &next.0 {
-                    lanes.fetch(column);
+        while at + 2 <= sums.len() {
+            for next in &next {
+                for next in next.iter().skip(at).take(2) {
+                    for column in &next.0 {
+                        lanes.fetch(column);
+                    }
                 }
             }
-            update::<L, 2, WIDTH>(lanes, pair, factor, to, 0);
+            update::<L, B, 2, WIDTH>(lanes, blocks, factors, sums, (at, 0));
+            at += 2;
         }
-        for (to, one) in last.iter_mut().zip(rest) {
-            update::<L, 1, WIDTH>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), 0);
+        if at < sums.len() {
+            update::<L, B, 1, WIDTH>(lanes, blocks, factors, sums, (at, 0));
         }
     } else {
-        for (to, one) in sums.iter_mut().zip(block) {
+        while at < sums.len() {
             for j in (0..WIDTH).step_by(2) {
-                update::<L, 1, 2>(lanes, std::array::from_ref(one), factor, std::array::from_mut(to), j);
+                update::<L, B, 1, 2>(lanes, blocks, factors, sums, (at, j));
             }
+            at += 1;
         }
     }
 }
 
-/// Adds the products of `P` panels of a block with the `N` columns of its factor from `j` on.
+/// Adds the products of `P` panels of some blocks, from `at` on, with the `N` columns of their factors from `j` on.
 #[inline(always)]
-fn update<L: Lanes, const P: usize, const N: usize>(
+fn update<L: Lanes, const B: usize, const P: usize, const N: usize>(
     lanes: L,
-    block: &[Panel; P],
-    factor: &Single,
-    to: &mut [Panel; P],
-    j: usize,
+    blocks: [&[Panel]; B],
+    factors: [&Single; B],
+    to: &mut [Panel],
+    (at, j): (usize, usize),
 ) {
+    let Some(to) = to[at..].first_chunk_mut::<P>() else { return };
     let mut sum: [[L::Wide; N]; P] =
         std::array::from_fn(|panel| std::array::from_fn(|at| lanes.wide(&to[panel].0[j + at])));
-    for (k, factor) in factor.iter().enumerate() {
-        let x: [L::Wide; P] = std::array::from_fn(|at| lanes.wide(&block[at].0[k]));
-        for (at, &factor) in factor[j..j + N].iter().enumerate() {
-            let factor = lanes.wide_splat(factor);
-            for (sum, &x) in sum.iter_mut().zip(&x) {
-                sum[at] = lanes.wide_add_mul(sum[at], x, factor);
+    for (block, factor) in blocks.iter().zip(factors) {
+        let Some(block) = block[at..].first_chunk::<P>() else { return };
+        for (k, factor) in factor.iter().enumerate() {
+            let x: [L::Wide; P] = std::array::from_fn(|at| lanes.wide(&block[at].0[k]));
+            for (at, &factor) in factor[j..j + N].iter().enumerate() {
+                let factor = lanes.wide_splat(factor);
+                for (sum, &x) in sum.iter_mut().zip(&x) {
+                    sum[at] = lanes.wide_add_mul(sum[at], x, factor);
+                }
             }
         }
     }

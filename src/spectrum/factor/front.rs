@@ -35,6 +35,9 @@ pub(super) struct Front<'a> {
 /// A pivot is taken where it stands unless another one is so many times larger.
 const MUCH_LARGER: f64 = 4.0;
 
+/// Multiplications of a front that are not worth a look at the watch in between.
+const SMALL: usize = 1 << 18;
+
 impl Front<'_> {
     /// Eliminates.
     ///
@@ -46,6 +49,10 @@ impl Front<'_> {
             self.pivots[at] = self.values[at * size + at];
             self.order[at] = at as u32;
         }
+        if size * size * width <= SMALL {
+            dispatch(Whole { front: self });
+            return poll.spend(size * size * width);
+        }
         for done in (0..width).step_by(WIDTH) {
             dispatch(Pivots { front: self, done });
             poll.spend(WIDTH * size * (width - done))?;
@@ -56,6 +63,47 @@ impl Front<'_> {
             poll.spend(WIDTH * width * (size - next))?;
         }
         Ok(())
+    }
+}
+
+/// Writes zeros to the lower triangle of a front, by blocks of eight rows, as it is worked on.
+pub(super) struct Clear<'a> {
+    pub values: &'a mut [f64],
+    pub size: usize,
+}
+
+impl Kernel for Clear<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        for (column, values) in self.values.chunks_exact_mut(self.size).enumerate() {
+            let rows: &mut [Row] = values.as_chunks_mut().0;
+            for row in &mut rows[column / WIDTH..] {
+                *row = lanes.row(lanes.zero());
+            }
+        }
+    }
+}
+
+/// All of it.
+struct Whole<'a, 'f> {
+    front: &'a mut Front<'f>,
+}
+
+impl Kernel for Whole<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let (size, width) = (self.front.size, self.front.width);
+        for done in (0..width).step_by(WIDTH) {
+            Pivots { front: &mut *self.front, done }.run(lanes);
+        }
+        Beside { front: &mut *self.front }.run(lanes);
+        for next in (width.next_multiple_of(WIDTH)..size).step_by(WIDTH) {
+            Others { front: &mut *self.front, next }.run(lanes);
+        }
     }
 }
 
@@ -75,18 +123,20 @@ impl Kernel for Pivots<'_, '_> {
         let (size, width) = (*size, *width);
         let end = (done + WIDTH).min(width);
         for pivot in done..end {
-            let larger = |best: usize, at: usize| if pivots[at].abs() > pivots[best].abs() { at } else { best };
-            let best = (pivot..width).fold(pivot, larger);
-            if pivots[best].abs() > MUCH_LARGER * pivots[pivot].abs() {
+            let most = largest(&pivots[pivot..width]);
+            // Mostly it is not, so that where the largest one is need not be known.
+            if most > MUCH_LARGER * pivots[pivot].abs() {
+                let best = (pivot..width).find(|&at| pivots[at].abs() == most).unwrap_or(pivot);
                 exchange(values, scaled, size, done, pivot, best);
                 pivots.swap(pivot, best);
                 order.swap(pivot, best);
             }
             column(lanes, values, scaled, size, done, pivot);
             pivots[pivot] = scaled[pivot * size + pivot];
-            let (scaled, own) = (&scaled[pivot * size..], &values[pivot * size..]);
-            for at in pivot + 1..width {
-                pivots[at] -= scaled[at] * own[at];
+            let later = pivot * size + pivot + 1..pivot * size + width;
+            let products = scaled[later.clone()].iter().zip(&values[later]);
+            for (pivot, (scaled, own)) in pivots[pivot + 1..width].iter_mut().zip(products) {
+                *pivot -= scaled * own;
             }
         }
         let mut next = done + WIDTH;
@@ -140,6 +190,22 @@ impl Kernel for Others<'_, '_> {
         let (left, right) = values.split_at_mut(self.next * *size);
         subtract(lanes, left, scaled, &mut right[..WIDTH * *size], *size, self.next, 0..*width);
     }
+}
+
+/// The largest of some numbers, without their signs.
+#[inline(always)]
+pub(super) fn largest(values: &[f64]) -> f64 {
+    let larger = |most: f64, value: &f64| if value.abs() > most { value.abs() } else { most };
+    // In several chains, for each comparison waits for the one before it.
+    let (chunks, rest) = values.as_chunks::<WIDTH>();
+    let mut most = [0.0; WIDTH];
+    for chunk in chunks {
+        for (most, value) in most.iter_mut().zip(chunk) {
+            *most = larger(*most, value);
+        }
+    }
+    let most = if chunks.is_empty() { 0.0 } else { most.iter().fold(0.0, larger) };
+    rest.iter().fold(most, larger)
 }
 
 /// Exchanges rows and columns `a < b` of a front of which the columns before `a` are eliminated, and those from `done`

@@ -1,10 +1,13 @@
 //! The factorisation for one shift.
 
-use super::{Symbolic, front::Front};
+use super::{
+    Symbolic,
+    front::{Clear, Front, largest},
+};
 use crate::{
     laplacian::{MassMatrix, Symmetric},
     spectrum::{
-        lanes::{Buffer, WIDTH},
+        lanes::{Buffer, WIDTH, dispatch},
         poll::{Poll, Stop},
         timings::Cost,
     },
@@ -71,7 +74,7 @@ impl Factor {
             let size = used.next_multiple_of(WIDTH);
             poll.spend(used * used)?;
             let front = &mut self.front.flat()[..size * size];
-            front.fill(0.0);
+            dispatch(Clear { values: front, size });
             entries(symbolic, matrix, sigma, begin..begin + width, size, front);
             for child in children(symbolic, at) {
                 self.absorb(symbolic, child, size);
@@ -92,10 +95,8 @@ impl Factor {
             let front = &self.front.flat()[..size * size];
             let values = &mut self.values[symbolic.value_start[at]..symbolic.value_start[at + 1]];
             pack(front, size, width, rows.len(), values);
-            self.growth = values.iter().fold(self.growth, |most, value| most.max(value.abs()));
-            for column in width..used {
-                self.stack.extend_from_slice(&front[column * size + column..column * size + used]);
-            }
+            self.growth = largest(values).max(self.growth);
+            self.stack.extend_from_slice(&front[width * size..used * size]);
         }
         poll.charge(Cost::Factorisation);
         Ok(negative)
@@ -109,15 +110,23 @@ impl Factor {
     /// Adds the update matrix of the last child on the stack to the front.
     fn absorb(&mut self, symbolic: &Symbolic, child: usize, size: usize) {
         let relative = &symbolic.relative[symbolic.row_start[child]..symbolic.row_start[child + 1]];
-        let count = relative.len();
-        let start = self.stack.len() - count * (count + 1) / 2;
+        let (_, width, _) = symbolic.node(child);
+        let from = (width + relative.len()).next_multiple_of(WIDTH);
+        let start = self.stack.len() - relative.len() * from;
         let front = self.front.flat();
-        let mut update = &self.stack[start..];
-        for (at, &column) in relative.iter().enumerate() {
-            let (values, rest) = update.split_at(count - at);
-            update = rest;
+        for (at, (&column, values)) in relative.iter().zip(self.stack[start..].chunks_exact(from)).enumerate() {
+            let values = &values[width + at..];
             let target = &mut front[column as usize * size..(column as usize + 1) * size];
-            for (&row, &value) in relative[at..].iter().zip(values) {
+            let rows = &relative[at..];
+            let last = column as usize + rows.len();
+            if rows.last().is_some_and(|&row| row as usize + 1 == last) {
+                // They follow each other.
+                for (target, &value) in target[column as usize..last].iter_mut().zip(values) {
+                    *target += value;
+                }
+                continue;
+            }
+            for (&row, &value) in rows.iter().zip(values) {
                 target[row as usize] += value;
             }
         }
@@ -172,13 +181,48 @@ fn entries(
 
 /// Writes the columns of M of one supernode in the order in which the solves read them: in pieces of eight columns (the
 /// last one as many as there are), of each its strictly lower triangle by rows, then all rows below that.
-fn pack(front: &[f64], size: usize, width: usize, below: usize, values: &mut [f64]) {
-    let mut to = values.iter_mut();
+fn pack(front: &[f64], size: usize, width: usize, below: usize, mut values: &mut [f64]) {
     for first in (0..width).step_by(WIDTH) {
-        let end = (first + WIDTH).min(width);
-        for row in first + 1..width + below {
-            for (column, to) in (first..row.min(end)).zip(&mut to) {
-                *to = front[column * size + row];
+        let count = WIDTH.min(width - first);
+        let all = width + below;
+        let (triangle, rest) = values.split_at_mut(count * (count - 1) / 2);
+        let mut to = triangle.iter_mut();
+        for row in 1..count {
+            for (column, to) in (0..row).zip(&mut to) {
+                *to = front[(first + column) * size + first + row];
+            }
+        }
+        let (rows, rest) = rest.split_at_mut(count * (all - first - count));
+        let from = Columns { front: &front[first * size..(first + count) * size], size, first: first + count };
+        match count {
+            1 => from.pack::<1>(rows),
+            2 => from.pack::<2>(rows),
+            3 => from.pack::<3>(rows),
+            4 => from.pack::<4>(rows),
+            5 => from.pack::<5>(rows),
+            6 => from.pack::<6>(rows),
+            7 => from.pack::<7>(rows),
+            _ => from.pack::<8>(rows),
+        }
+        values = rest;
+    }
+}
+
+/// Some columns of a front, from a row on.
+struct Columns<'a> {
+    front: &'a [f64],
+    size: usize,
+    first: usize,
+}
+
+impl Columns<'_> {
+    /// Writes them by rows, so many of them that the compiler knows.
+    fn pack<const W: usize>(&self, to: &mut [f64]) {
+        let to = to.as_chunks_mut::<W>().0;
+        let columns: [&[f64]; W] = std::array::from_fn(|at| &self.front[at * self.size + self.first..][..to.len()]);
+        for (row, to) in to.iter_mut().enumerate() {
+            for (to, column) in to.iter_mut().zip(columns) {
+                *to = column[row];
             }
         }
     }

@@ -162,8 +162,9 @@ impl Symbolic {
                 first[at] = first[first[at] as usize - 1];
                 height -= waiting.pop().unwrap_or(0);
             }
-            waiting.push(below * (below + 1) / 2);
-            height += below * (below + 1) / 2;
+            let update = below * (width + below).next_multiple_of(WIDTH);
+            waiting.push(update);
+            height += update;
             stack = stack.max(height);
         }
         let (pieces, piece_rows) = pieces(&begin, &row_start, &rows, &value_start, pulse)?;
