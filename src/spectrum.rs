@@ -66,7 +66,7 @@ mod vectors;
 mod window;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
-pub const KERNEL: u32 = 10;
+pub const KERNEL: u32 = 11;
 
 /// Why there is no spectrum.
 #[derive(Debug, Error)]
@@ -210,7 +210,7 @@ impl Spectrum {
 /// where they continue each other from λ = 0.
 ///
 /// The result is the same bits whatever is known, but for further bands that `known` holds. Time grows with the number
-/// of bands that are not known, at about 50 eigenvalues each.
+/// of bands that are not known, at 70 to 100 eigenvalues each.
 ///
 /// Memory is bounded whatever the mesh and however many eigenvalues: by 8 MB, 4 kB for each row of the matrices, 24
 /// bytes for each number in a factor ([`Timings::entries`]) and 1 kB for each vertex and face (18 faces for each point

@@ -17,6 +17,16 @@ pub(super) fn less<L: Lanes>(lanes: L, from: L::Reg, u: &Row, factor: &[L::Reg; 
     factor.iter().zip(u).fold(from, |left, (&factor, &value)| lanes.sub_mul(left, lanes.splat(value), factor))
 }
 
+/// A row times M, `factor` holding the rows of M.
+#[inline(always)]
+pub(super) fn combine<L: Lanes>(lanes: L, row: &Row, factor: &[L::Reg; WIDTH]) -> L::Reg {
+    let mut sum = lanes.zero();
+    for (&factor, &value) in factor.iter().zip(row) {
+        sum = lanes.add_mul(sum, lanes.splat(value), factor);
+    }
+    sum
+}
+
 /// Adds Vᵢᵀ t to the i-th square for every block of a basis.
 pub(super) struct Dots<'a, 'b> {
     pub basis: &'a [&'b [Row]],
@@ -75,11 +85,10 @@ impl Kernel for Update<'_, '_> {
     }
 }
 
-/// `to = x M` with an eight by eight M.
+/// `x = x M` with an eight by eight M.
 pub(super) struct Combine<'a> {
-    pub x: &'a [Row],
+    pub x: &'a mut [Row],
     pub factor: &'a Square,
-    pub to: &'a mut [Row],
 }
 
 impl Kernel for Combine<'_> {
@@ -87,14 +96,10 @@ impl Kernel for Combine<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { x, factor, to } = self;
+        let Self { x, factor } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
-        for (to, row) in to.iter_mut().zip(x) {
-            let mut sum = lanes.zero();
-            for (&factor, &value) in factor.iter().zip(row) {
-                sum = lanes.add_mul(sum, lanes.splat(value), factor);
-            }
-            *to = lanes.row(sum);
+        for row in x {
+            *row = lanes.row(combine(lanes, row, &factor));
         }
     }
 }

@@ -46,17 +46,13 @@ pub(super) struct Scratch {
     images: Vec<Vec<Panel>>,
     /// The basis in double precision.
     exact: Vec<Buffer>,
-    /// The newest block of the basis and the one before it, in double precision.
+    /// The newest block V of the basis and the one before it, in double precision.
     now: Buffer,
     past: Buffer,
     /// A⁻¹B V, then the next block before it is normalised.
     work: Buffer,
-    /// B times that.
-    mass: Buffer,
-    /// The block after the newest.
-    next: Buffer,
-    /// B V of the newest block.
-    newest: Buffer,
+    /// B V, until nothing is to be compared with it any more, then B `work`.
+    image: Buffer,
     small: Vec<f64>,
     tails: Vec<Row>,
     room: Vec<Row>,
@@ -132,8 +128,8 @@ impl<'a> Krylov<'a> {
         poll: &mut Poll,
     ) -> Result<Self, Stop> {
         let len = pencil.order() * WIDTH;
-        let Scratch { now, past, next, work, mass, newest, .. } = &mut *scratch;
-        for buffer in [now, past, next, work, mass, newest] {
+        let Scratch { now, past, work, image, .. } = &mut *scratch;
+        for buffer in [now, past, work, image] {
             buffer.reserve(len);
             poll.spend(8 * len)?;
         }
@@ -158,8 +154,9 @@ impl<'a> Krylov<'a> {
         };
         for _ in 0..WARMING {
             let (_, inverse) = this.decompose(0, ROUGHLY, poll)?;
-            let Scratch { work, mass, .. } = &mut *this.scratch;
-            dispatch(Combine { x: mass.rows(), factor: &inverse, to: work.rows_mut() });
+            let Scratch { work, image, .. } = &mut *this.scratch;
+            std::mem::swap(work, image);
+            dispatch(Combine { x: work.rows_mut(), factor: &inverse });
             poll.charge(Cost::Blocks);
             this.apply(poll)?;
         }
@@ -194,7 +191,7 @@ impl<'a> Krylov<'a> {
         Ok(())
     }
 
-    /// `work = A⁻¹ newest`, where `work` holds a copy of `newest`.
+    /// `work = A⁻¹ image`, where `work` holds a copy of `image`.
     fn apply(&mut self, poll: &mut Poll) -> Result<(), Stop> {
         self.factor.solve(&self.pencil.symbolic, self.scratch.work.rows_mut(), poll)?;
         #[cfg(test)]
@@ -208,14 +205,15 @@ impl<'a> Krylov<'a> {
         self.scratch.tamper.sides(sides);
     }
 
-    /// Looks how well `work` solves (L − σB) work = newest.
+    /// Looks how well `work` solves (L − σB) work = image, for the first block.
     fn measure(&mut self) {
-        let Scratch { now, work, mass, newest, .. } = &mut *self.scratch;
-        mass.flat().copy_from_slice(newest.flat());
-        let r = mass.rows_mut();
+        // There is no block before it.
+        let Scratch { now, past, work, image, .. } = &mut *self.scratch;
+        past.flat().copy_from_slice(image.flat());
+        let r = past.rows_mut();
         dispatch(Residual { matrix: &self.pencil.matrix, sigma: self.sigma, x: work.rows(), r });
         let mut sum = [Square::default()];
-        dispatch(Dots { basis: &[now.rows()], t: mass.rows(), sums: &mut sum });
+        dispatch(Dots { basis: &[now.rows()], t: past.rows(), sums: &mut sum });
         self.wrong = std::array::from_fn(|j| sum[0].iter().fold(0.0, |most, row| row[j].abs().max(most)));
     }
 
@@ -235,16 +233,16 @@ impl<'a> Krylov<'a> {
     /// blocks, if that is all it has to look at.
     fn recur(&mut self) -> (Square, Vec<Square>) {
         let few = matches!(self.basis, Basis::Single { .. }) && self.blocks() > FIRST + 1 && !self.due();
-        let Scratch { past, work, newest, images, room, .. } = &mut *self.scratch;
+        let Scratch { past, work, image, images, room, .. } = &mut *self.scratch;
         let (mut along, mut seen) = ([Square::default()], Vec::new());
         if let Some(beta) = self.beta.last() {
             let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
-            let (past, newest, w) = (past.rows(), newest.rows(), work.rows_mut());
+            let (past, newest, w) = (past.rows(), image.rows(), work.rows_mut());
             let images: Vec<&[Panel]> = images.iter().take(if few { FIRST } else { 0 }).map(Vec::as_slice).collect();
             let sums = &mut seen;
             along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &images, room, sums });
         } else {
-            dispatch(Dots { basis: &[newest.rows()], t: work.rows(), sums: &mut along });
+            dispatch(Dots { basis: &[image.rows()], t: work.rows(), sums: &mut along });
         }
         let [along] = along;
         let alpha = symmetric(&along);
@@ -259,11 +257,11 @@ impl<'a> Krylov<'a> {
     }
 
     /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix. Q is to be the block `at` of the
-    /// basis and is in `next`; `BQ` is in `newest` and in `work`, where it is to be multiplied next. Columns that
-    /// depend on the others are replaced by random ones, with zeros in R.
+    /// basis and takes the place of `work`; `BQ` is in `image` and, where the block before the newest was, in `past`.
+    /// Columns that depend on the others are replaced by random ones, with zeros in R.
     fn normalise(&mut self, at: usize, poll: &mut Poll) -> Result<Square, Stop> {
         let (total, inverse) = self.decompose(at, STRICTLY, poll)?;
-        let Scratch { blocks, images, next, work, mass, newest, .. } = &mut *self.scratch;
+        let Scratch { blocks, images, past, work, image, .. } = &mut *self.scratch;
         let count = panels(work.rows().len());
         let room = |list: &mut Vec<Vec<Panel>>| {
             if list.len() == at {
@@ -280,15 +278,14 @@ impl<'a> Krylov<'a> {
                 single[1] = &mut images[at];
             }
         }
-        let (x, y, q) = (work.rows_mut(), mass.rows_mut(), next.rows_mut());
-        dispatch(Normalise { x, y, factor: &inverse, q, single });
-        std::mem::swap(mass, newest);
+        let (x, y, copy) = (work.rows_mut(), image.rows_mut(), past.rows_mut());
+        dispatch(Normalise { x, y, factor: &inverse, copy, single });
         poll.charge(Cost::Blocks);
         poll.spend(4 * WIDTH * work.rows().len())?;
         Ok(total)
     }
 
-    /// Finds R and a matrix M such that `work M` is B-orthonormal, with `B work` in `mass`; `work` may have changed for
+    /// Finds R and a matrix M such that `work M` is B-orthonormal, with `B work` in `image`; `work` may have changed for
     /// that, so that it was `work M R` at first.
     fn decompose(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<(Square, Square), Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
@@ -297,11 +294,12 @@ impl<'a> Krylov<'a> {
         }
         let mut round = 0;
         loop {
-            let gram = self.gram(poll);
+            let mut gram = self.gram(poll);
             if blocks > 0 && (round > 0 || self.shrunk(&gram)) {
                 self.next_to();
+                gram = self.gram(poll);
             }
-            let Scratch { next, work, .. } = &mut *self.scratch;
+            let work = &mut self.scratch.work;
             poll.spend(2 * WIDTH * work.rows().len())?;
             let (upper, inverse, worst, lost) = cholesky(&gram);
             // The rows of lost columns are zero, so that their random replacements stay out of R.
@@ -310,9 +308,8 @@ impl<'a> Krylov<'a> {
             if (lost == 0 && worst > share) || round == ROUNDS {
                 return Ok((total, inverse));
             }
-            dispatch(Combine { x: work.rows(), factor: &inverse, to: next.rows_mut() });
+            dispatch(Combine { x: work.rows_mut(), factor: &inverse });
             poll.charge(Cost::Blocks);
-            std::mem::swap(next, work);
             // Cholesky's Q is off by rounding over `worst`: it takes a second round, but Q still has the basis's
             // complement to nearly all digits.
             if lost == 0 && worst > 1e-6 {
@@ -330,27 +327,27 @@ impl<'a> Krylov<'a> {
         }
     }
 
-    /// `mass = B work`; returns the Gram matrix of `work`.
+    /// `image = B work`; returns the Gram matrix of `work`.
     fn gram(&mut self, poll: &mut Poll) -> Square {
-        let Scratch { work, mass, .. } = &mut *self.scratch;
-        let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+        let Scratch { work, image, .. } = &mut *self.scratch;
+        let gram = dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: image.rows_mut() });
         poll.charge(Cost::Products);
         gram
     }
 
-    /// Takes `next` as the next block of the basis.
+    /// Takes `work` as the next block of the basis, and has B times it, which is in `past`, multiplied next.
     fn keep(&mut self) {
         let at = self.beta.len();
-        let Scratch { exact, now, past, next, .. } = &mut *self.scratch;
+        let Scratch { exact, now, past, work, .. } = &mut *self.scratch;
         if matches!(self.basis, Basis::Double(_)) {
             if exact.len() == at {
                 exact.push(Buffer::default());
             }
             exact[at].reserve(self.pencil.order() * WIDTH);
-            exact[at].rows_mut().copy_from_slice(next.rows());
+            exact[at].rows_mut().copy_from_slice(work.rows());
         }
         std::mem::swap(past, now);
-        std::mem::swap(now, next);
+        std::mem::swap(now, work);
     }
 
     /// The Ritz values of the basis without its last block, by distance from the shift. None when the products with

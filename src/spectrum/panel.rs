@@ -35,13 +35,13 @@ fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
     }
 }
 
-/// `q = x M` and `x = y = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to
-/// single precision as well, for the basis, if there is room for them.
+/// `x = x M` and `y = copy = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to single
+/// precision as well, for the basis, if there is room for them.
 pub(super) struct Normalise<'a> {
     pub x: &'a mut [Row],
     pub y: &'a mut [Row],
     pub factor: &'a Square,
-    pub q: &'a mut [Row],
+    pub copy: &'a mut [Row],
     pub single: [&'a mut [Panel]; 2],
 }
 
@@ -50,25 +50,18 @@ impl Kernel for Normalise<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { x, y, factor, q, single: [first, second] } = self;
+        let Self { x, y, factor, copy, single: [first, second] } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
-        let combine = |row: &Row| {
-            let mut sum = lanes.zero();
-            for (&factor, &value) in factor.iter().zip(row) {
-                sum = lanes.add_mul(sum, lanes.splat(value), factor);
+        let groups = x.chunks_mut(ROWS).zip(y.chunks_mut(ROWS)).zip(copy.chunks_mut(ROWS));
+        for (at, ((x, y), copy)) in groups.enumerate() {
+            for x in x.iter_mut() {
+                *x = lanes.row(block::combine(lanes, x, &factor));
             }
-            lanes.row(sum)
-        };
-        let groups = x.chunks_mut(ROWS).zip(y.chunks_mut(ROWS)).zip(q.chunks_mut(ROWS));
-        for (at, ((x, y), q)) in groups.enumerate() {
-            for (q, x) in q.iter_mut().zip(x.iter()) {
-                *q = combine(x);
+            for (y, copy) in y.iter_mut().zip(copy) {
+                *y = lanes.row(block::combine(lanes, y, &factor));
+                *copy = *y;
             }
-            for (y, x) in y.iter_mut().zip(x) {
-                *y = combine(y);
-                *x = *y;
-            }
-            for (to, rows) in [(first.get_mut(at), q), (second.get_mut(at), y)] {
+            for (to, rows) in [(first.get_mut(at), x), (second.get_mut(at), y)] {
                 if let Some(to) = to {
                     to.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
                 }

@@ -21,19 +21,19 @@ use super::{
 mod shift;
 
 /// Eigenvalues that the first slices aim at, so that a few eigenvalues cost little.
-const TARGET: f64 = 54.0;
+const TARGET: f64 = 72.0;
 /// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
-const WIDE: f64 = 87.0;
+const WIDE: f64 = 100.0;
 /// Eigenvalues that a slice may have before it is made narrower, as a multiple of what it aims at.
 const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
-const BLOCKS: usize = 44;
+const BLOCKS: usize = 48;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
 /// slices of [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which
 /// needs fewer, for nothing is beyond its left side.
-const FIRST_LOOK: usize = 22;
+const FIRST_LOOK: usize = 26;
 const PER_BLOCK: f64 = 4.5;
-const LOWEST_LOOK: usize = 18;
+const LOWEST_LOOK: usize = 20;
 /// A process with b blocks has mostly seen 2 b eigenvalues on each side, but for so many.
 const UNSEEN: usize = 17;
 /// How much of what a process is to see on its right side it has to see. The process above sees the rest.
@@ -48,7 +48,7 @@ pub(super) fn target(above: usize) -> f64 {
 
 /// With fewer rows a basis is kept in double precision. It may come to hold a good part of the space, and what is left
 /// of that is then so little that single precision does not know it from rounding.
-const FEW_ROWS: usize = 4 * BLOCKS * WIDTH;
+const FEW_ROWS: usize = 1408;
 
 /// What a thread works with: the memory of a factorisation and of a process, for one piece after the other.
 #[derive(Debug, Default)]

@@ -173,12 +173,12 @@ impl Krylov<'_> {
     /// `w' = w − Σ Vₖ Dₖ + V Σ CₖᵀDₖ`, so that these two neighbours stay orthogonal to the second order, too.
     fn pair(&mut self, along: &Square, poll: &mut Poll) -> Result<f64, Stop> {
         let older = self.blocks() - 1;
-        let Scratch { blocks, now, work, newest, room, .. } = &mut *self.scratch;
+        let Scratch { blocks, now, work, image, room, .. } = &mut *self.scratch;
         let (basis, rest) = blocks.split_at_mut(older);
         let basis = panels(basis);
         let right = [
-            Right { mass: &Product::Unit, w: newest.rows(), less: None },
-            Right { mass: &self.pencil.mass, w: work.rows(), less: Some((newest.rows(), along)) },
+            Right { mass: &Product::Unit, w: image.rows(), less: None },
+            Right { mass: &self.pencil.mass, w: work.rows(), less: Some((image.rows(), along)) },
         ];
         let mut sums = products(&basis, right, room, poll)?;
         let (c, d) = sums.split_at_mut(older);
@@ -217,7 +217,7 @@ impl Krylov<'_> {
     /// precision ([`next_to`](Self::next_to) does that), and to the locked vectors. Returns its components along the
     /// blocks.
     pub(super) fn clean(&mut self, blocks: usize, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, exact, work, mass, room, .. } = &mut *self.scratch;
+        let Scratch { blocks: basis, exact, work, image, room, .. } = &mut *self.scratch;
         let len = work.rows().len();
         let mut sums = Vec::new();
         match self.basis {
@@ -229,10 +229,10 @@ impl Krylov<'_> {
             }
             Basis::Double(locked) => {
                 let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
-                dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: mass.rows_mut() });
+                dispatch(Multiply { mass: &self.pencil.mass, x: work.rows(), to: image.rows_mut() });
                 poll.charge(Cost::Products);
                 sums.resize(all.len(), Square::default());
-                dispatch(Dots { basis: &all, t: mass.rows(), sums: &mut sums });
+                dispatch(Dots { basis: &all, t: image.rows(), sums: &mut sums });
                 poll.spend(len * all.len() * WIDTH)?;
                 dispatch(Update { basis: &all, factors: &sums, w: work.rows_mut() });
                 poll.spend(len * all.len() * WIDTH)?;
@@ -243,13 +243,12 @@ impl Krylov<'_> {
         Ok(sums)
     }
 
-    /// Makes `work` orthogonal to the newest block; `mass` is B times it, before and after.
+    /// Makes `work` orthogonal to the newest block; `image` is B times it before, and not after.
     pub(super) fn next_to(&mut self) {
-        let Scratch { now, work, mass, newest, .. } = &mut *self.scratch;
+        let Scratch { now, work, image, .. } = &mut *self.scratch;
         let mut sum = [Square::default()];
-        dispatch(Dots { basis: &[now.rows()], t: mass.rows(), sums: &mut sum });
+        dispatch(Dots { basis: &[now.rows()], t: image.rows(), sums: &mut sum });
         dispatch(Update { basis: &[now.rows()], factors: &sum, w: work.rows_mut() });
-        dispatch(Update { basis: &[newest.rows()], factors: &sum, w: mass.rows_mut() });
     }
 
     /// Whether so little is left of a column that it is not orthogonal to the newest block to rounding.
@@ -281,10 +280,6 @@ impl Krylov<'_> {
             None => self.losses.grown(self.reach(), self.coupled(), left),
         };
         if off.is_nan() || off > MOST {
-            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
-            work.flat().copy_from_slice(next.flat());
-            // Where B times the newest block was left.
-            std::mem::swap(mass, newest);
             self.clean(blocks, poll)?;
             self.gram(poll);
             self.next_to();
@@ -300,10 +295,6 @@ impl Krylov<'_> {
     fn note_all(&mut self, beta: &mut Square, poll: &mut Poll) -> Result<(), Stop> {
         let Some(mut lost) = self.lost.pop() else { return Ok(()) };
         if (0..WIDTH).any(|column| norm(&lost, column) > norm(&[*beta], column)) {
-            let Scratch { next, work, mass, newest, .. } = &mut *self.scratch;
-            work.flat().copy_from_slice(next.flat());
-            // Where B times the newest block was left, which decomposing takes for that.
-            std::mem::swap(mass, newest);
             let more = self.clean(self.blocks(), poll)?;
             for (lost, more) in lost.iter_mut().zip(&more) {
                 let more = product(more, beta);

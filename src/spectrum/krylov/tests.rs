@@ -104,14 +104,13 @@ fn dependent_columns_are_replaced() {
     }
     let before = krylov.scratch.work.rows().to_vec();
     let upper = krylov.normalise(0, &mut poll).unwrap();
-    let gram =
-        dispatch(Multiply { mass: &pencil.mass, x: krylov.scratch.next.rows(), to: krylov.scratch.mass.rows_mut() });
+    let gram = krylov.gram(&mut poll);
     for (i, row) in gram.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
             assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-11, "{i} {j} {entry}");
         }
     }
-    for (before, q) in before.iter().zip(krylov.scratch.next.rows()) {
+    for (before, q) in before.iter().zip(krylov.scratch.work.rows()) {
         for (j, before) in before.iter().enumerate() {
             let product: f64 = (0..WIDTH).map(|k| q[k] * upper[k][j]).sum();
             assert!((product - before).abs() < 1e-10, "column {j}: {product} {before}");
@@ -198,7 +197,7 @@ fn a_block_that_is_mended_leaves_no_trace() {
                 let mut image = vec![[0.0; WIDTH]; pencil.order()];
                 let older = rows(&krylov, 6);
                 dispatch(Multiply { mass: &pencil.mass, x: &older, to: &mut image });
-                let Scratch { now, newest, work, .. } = &mut *krylov.scratch;
+                let Scratch { now, image: newest, work, .. } = &mut *krylov.scratch;
                 for (to, more) in [(now, &older), (newest, &image), (work, &image)] {
                     for (to, more) in to.rows_mut().iter_mut().zip(more) {
                         for (to, more) in to.iter_mut().zip(more) {
