@@ -285,8 +285,8 @@ impl<'a> Krylov<'a> {
         Ok(total)
     }
 
-    /// Finds R and a matrix M such that `work M` is B-orthonormal, with `B work` in `image`; `work` may have changed for
-    /// that, so that it was `work M R` at first.
+    /// Finds R and a matrix M such that `work M` is B-orthonormal, with `B work` in `image`; `work` may have changed
+    /// for that, so that it was `work M R` at first.
     fn decompose(&mut self, blocks: usize, share: f64, poll: &mut Poll) -> Result<(Square, Square), Stop> {
         let mut total: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
         if blocks == 0 && !self.basis.locked().is_empty() {

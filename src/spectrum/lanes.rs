@@ -14,49 +14,15 @@
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
 
+pub(super) use self::buffer::Buffer;
+
+mod buffer;
+
 /// Vectors per block.
 pub(super) const WIDTH: usize = 8;
 
 /// One row of a block: entry i of eight vectors.
 pub(super) type Row = [f64; WIDTH];
-
-/// Numbers that start at a cache line, so that no row straddles two.
-#[derive(Debug, Default)]
-pub(super) struct Buffer {
-    data: Vec<f64>,
-    offset: usize,
-    len: usize,
-}
-
-impl Buffer {
-    /// At least this many numbers; what was in it is lost when it has to grow.
-    pub(super) fn reserve(&mut self, len: usize) {
-        if self.data.len() < len + WIDTH {
-            self.data = vec![0.0; len + WIDTH];
-            let away = self.data.as_ptr().align_offset(64);
-            self.offset = if away < WIDTH { away } else { 0 };
-        }
-        self.len = len;
-    }
-
-    /// All numbers.
-    #[inline(always)]
-    pub(super) fn flat(&mut self) -> &mut [f64] {
-        &mut self.data[self.offset..self.offset + self.len]
-    }
-
-    /// All numbers, eight to a row.
-    #[inline(always)]
-    pub(super) fn rows(&self) -> &[Row] {
-        self.data[self.offset..self.offset + self.len].as_chunks().0
-    }
-
-    /// All numbers, eight to a row.
-    #[inline(always)]
-    pub(super) fn rows_mut(&mut self) -> &mut [Row] {
-        self.data[self.offset..self.offset + self.len].as_chunks_mut().0
-    }
-}
 
 /// Arithmetic on rows held in registers.
 pub(super) trait Lanes: Copy {

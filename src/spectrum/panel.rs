@@ -35,8 +35,8 @@ fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
     }
 }
 
-/// `x = x M` and `y = copy = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to single
-/// precision as well, for the basis, if there is room for them.
+/// `x = x M` and `y = copy = y M` for a block x and y = Bx, where M makes x orthonormal; both results are rounded to
+/// single precision as well, for the basis, if there is room for them.
 pub(super) struct Normalise<'a> {
     pub x: &'a mut [Row],
     pub y: &'a mut [Row],

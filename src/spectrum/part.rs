@@ -6,7 +6,8 @@
 //! once ([`team`](super::team)); only at its end a process has to know how much the one below it has seen, for it goes
 //! on until it has seen the rest. [`Stretch`](super::window) takes the steps one after the other.
 
-pub(super) use self::shift::{End, Ending, Shift};
+pub(super) use self::shift::{End, Ending, Shift, target};
+use self::shift::{LOWEST, TARGET};
 use super::{
     band::Band,
     factor::Factor,
@@ -20,10 +21,6 @@ use super::{
 
 mod shift;
 
-/// Eigenvalues that the first slices aim at, so that a few eigenvalues cost little.
-const TARGET: f64 = 72.0;
-/// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
-const WIDE: f64 = 100.0;
 /// Eigenvalues that a slice may have before it is made narrower, as a multiple of what it aims at.
 const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
@@ -33,18 +30,13 @@ const BLOCKS: usize = 48;
 /// needs fewer, for nothing is beyond its left side.
 const FIRST_LOOK: usize = 26;
 const PER_BLOCK: f64 = 4.5;
-const LOWEST_LOOK: usize = 20;
+const LOWEST_LOOK: usize = 19;
 /// A process with b blocks has mostly seen 2 b eigenvalues on each side, but for so many.
 const UNSEEN: usize = 17;
 /// How much of what a process is to see on its right side it has to see. The process above sees the rest.
 const ENOUGH: f64 = 0.9;
 /// What one more block adds to what is seen of a side, as a share of what is wanted.
 const SHARE: f64 = 0.06;
-
-/// How many eigenvalues the slice above so many aims at.
-pub(super) fn target(above: usize) -> f64 {
-    if (above as f64) < 2.0 * TARGET { TARGET } else { WIDE }
-}
 
 /// With fewer rows a basis is kept in double precision. It may come to hold a good part of the space, and what is left
 /// of that is then so little that single precision does not know it from rounding.
@@ -101,7 +93,7 @@ impl Piece {
 
     /// Half of what a slice spans by Weyl's law: λ grows by 4π over the area from one eigenvalue to the next.
     fn first_half(&self) -> f64 {
-        0.5 * TARGET * 4.0 * std::f64::consts::PI / self.measure
+        0.5 * LOWEST * 4.0 * std::f64::consts::PI / self.measure
     }
 
     /// How many eigenvalues lie below a λ of the mesh, or below one a little above it where a shift there will not do.
@@ -137,8 +129,8 @@ impl Piece {
                 return Ok(None);
             }
             let Some(above) = self.factor(tools, sigma, poll)? else { continue };
-            let near = 1e-6 * half / TARGET;
-            let task = Task { sigma, above, left: 0.0, right: half, both: true, aim: TARGET, near };
+            let near = 1e-6 * half / LOWEST;
+            let task = Task { sigma, above, left: 0.0, right: half, both: true, aim: LOWEST, near };
             match self.process(tools, task, &mut |_| Ok(0), poll) {
                 Ok(sides) => {
                     let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
@@ -191,7 +183,7 @@ impl Piece {
                 continue;
             };
             let Some(total) = above.checked_sub(below) else { break };
-            let target = if lower == 0.0 { 0.5 * TARGET } else { target(below) };
+            let target = if lower == 0.0 { 0.5 * LOWEST } else { target(below) };
             if total as f64 > MOST * target && upper - lower > 1e-7 * upper && attempt < 40 {
                 upper = lower + (upper - lower) * (0.8 * target / total as f64).clamp(0.1, 0.8);
                 continue;

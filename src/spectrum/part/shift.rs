@@ -1,4 +1,22 @@
-//! Where the shifts of a chain are, in the scaled unit.
+//! Where the shifts of a chain are, in the scaled unit, and how many eigenvalues there are to be between two of them.
+
+/// Eigenvalues that the lowest slice aims at, if it were as wide on both sides of zero. The smallest ones are a small part
+/// of the distance from its upper end, and what rounding does to that is a large part of them.
+pub(super) const LOWEST: f64 = 54.0;
+/// Eigenvalues that the slices after it aim at, so that some hundred eigenvalues cost little.
+pub(super) const TARGET: f64 = 72.0;
+/// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
+const WIDE: f64 = 100.0;
+/// How many eigenvalues the slice above so many aims at.
+pub(in crate::spectrum) fn target(above: usize) -> f64 {
+    if above == 0 {
+        LOWEST
+    } else if (above as f64) < 2.0 * TARGET {
+        TARGET
+    } else {
+        WIDE
+    }
+}
 
 /// Where a chain has got to, in the scaled unit.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +90,7 @@ fn distance(lower: f64, upper: f64, (below, above): (usize, usize)) -> f64 {
     let count = (above - below).max(1) as f64;
     // The first slice begins at zero and is half as wide as the one after it.
     let before = if lower == 0.0 { 2.0 * upper } else { upper - lower };
-    (super::target(above) / count * (upper - lower)).clamp(0.5 * before, 2.5 * before)
+    (target(above) / count * (upper - lower)).clamp(0.5 * before, 2.5 * before)
 }
 
 /// Where a chain can end, by what the process at its last shift has seen on its right side.
