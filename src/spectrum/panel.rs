@@ -371,7 +371,8 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
     }
 }
 
-/// Adds the products of the panels of some blocks with their factors to as many panels, and has fetched what comes next.
+/// Adds the products of the panels of some blocks with their factors to as many panels, and has fetched what comes
+/// next.
 #[inline(always)]
 fn subtotal<L: Lanes, const B: usize>(
     lanes: L,

@@ -1,12 +1,13 @@
 //! Where the shifts of a chain are, in the scaled unit, and how many eigenvalues there are to be between two of them.
 
-/// Eigenvalues that the lowest slice aims at, if it were as wide on both sides of zero. The smallest ones are a small part
-/// of the distance from its upper end, and what rounding does to that is a large part of them.
+/// Eigenvalues that the lowest slice aims at, if it were as wide on both sides of zero. The smallest ones are a small
+/// part of the distance from its upper end, and what rounding does to that is a large part of them.
 pub(super) const LOWEST: f64 = 54.0;
 /// Eigenvalues that the slices after it aim at, so that some hundred eigenvalues cost little.
 pub(super) const TARGET: f64 = 72.0;
 /// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
 const WIDE: f64 = 100.0;
+
 /// How many eigenvalues the slice above so many aims at.
 pub(in crate::spectrum) fn target(above: usize) -> f64 {
     if above == 0 {
