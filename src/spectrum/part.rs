@@ -6,8 +6,8 @@
 //! once ([`team`](super::team)); only at its end a process has to know how much the one below it has seen, for it goes
 //! on until it has seen the rest. [`Stretch`](super::window) takes the steps one after the other.
 
-pub(super) use self::shift::{End, Ending, Shift, target};
-use self::shift::{LOWEST, TARGET};
+use self::shift::Aims;
+pub(super) use self::shift::{End, Ending, Shift};
 use super::{
     band::Band,
     factor::Factor,
@@ -26,9 +26,9 @@ const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 48;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
-/// slices of [`TARGET`], and for how many more eigenvalues it waits for one more; and in the lowest process, which
+/// slices of 72 eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process, which
 /// needs fewer, for nothing is beyond its left side.
-const FIRST_LOOK: usize = 26;
+const FIRST_LOOK: f64 = 26.0;
 const PER_BLOCK: f64 = 4.5;
 const LOWEST_LOOK: usize = 19;
 /// A process with b blocks has mostly seen 2 b eigenvalues on each side, but for so many.
@@ -86,14 +86,15 @@ impl Piece {
         match bands.last() {
             None => End { place: 0, upper: 0.0, above: 0, step: self.first_half(), middle: 0.0 },
             Some(band) => {
-                End::new(band.place, band.lower / self.unit, band.upper / self.unit, (band.below, band.above))
+                let counts = (band.below, band.above);
+                End::new(band.place, band.lower / self.unit, band.upper / self.unit, counts, self.aims())
             }
         }
     }
 
     /// Half of what a slice spans by Weyl's law: λ grows by 4π over the area from one eigenvalue to the next.
     fn first_half(&self) -> f64 {
-        0.5 * LOWEST * 4.0 * std::f64::consts::PI / self.measure
+        0.5 * Aims::LOWEST * 4.0 * std::f64::consts::PI / self.measure
     }
 
     /// How many eigenvalues lie below a λ of the mesh, or below one a little above it where a shift there will not do.
@@ -129,8 +130,8 @@ impl Piece {
                 return Ok(None);
             }
             let Some(above) = self.factor(tools, sigma, poll)? else { continue };
-            let near = 1e-6 * half / LOWEST;
-            let task = Task { sigma, above, left: 0.0, right: half, both: true, aim: LOWEST, near };
+            let near = 1e-6 * half / Aims::LOWEST;
+            let task = Task { sigma, above, left: 0.0, right: half, both: true, aim: Aims::LOWEST, near };
             match self.process(tools, task, &mut |_| Ok(0), poll) {
                 Ok(sides) => {
                     let end = End { place: 0, upper: sigma, above, step: 2.0 * half, middle: sigma + half };
@@ -156,7 +157,7 @@ impl Piece {
         }
         let before = self.end(&bands[..bands.len() - 1]);
         let (left, right) = (end.upper - before.middle, 0.5 * end.step);
-        let aim = aim(before.above, end.above);
+        let aim = self.aims().between(before.above, end.above);
         let task = Task { sigma: end.upper, above: end.above, left, right, both: true, aim, near: 0.0 };
         let wanted = bands.last().map_or(0, |last| last.values.len() - last.seen);
         self.process(tools, task, &mut |_| Ok(wanted), poll)
@@ -183,12 +184,21 @@ impl Piece {
                 continue;
             };
             let Some(total) = above.checked_sub(below) else { break };
-            let target = if lower == 0.0 { 0.5 * LOWEST } else { target(below) };
+            let target = if lower == 0.0 { 0.5 * Aims::LOWEST } else { self.aims().above(below) };
             if total as f64 > MOST * target && upper - lower > 1e-7 * upper && attempt < 40 {
                 upper = lower + (upper - lower) * (0.8 * target / total as f64).clamp(0.1, 0.8);
                 continue;
             }
-            return Ok(Shift { place: end.place, lower, upper, below, above, middle: end.middle, attempt });
+            return Ok(Shift {
+                place: end.place,
+                lower,
+                upper,
+                below,
+                above,
+                middle: end.middle,
+                attempt,
+                aims: self.aims(),
+            });
         }
         Err(Advance::Uncertified { at: upper * self.unit })
     }
@@ -223,7 +233,7 @@ impl Piece {
             left: upper - middle,
             right: 0.5 * shift.end().step,
             both: above < count,
-            aim: aim(below, above),
+            aim: self.aims().between(below, above),
             near: 1e-6 * (upper - lower) / (above - below).max(1) as f64,
         };
         self.process(tools, task, &mut |poll| Ok((above - below).saturating_sub(seen(poll)?)), poll)
@@ -275,7 +285,7 @@ impl Piece {
         }
         let Some(mut found) = join(&right.found[..count], &[], count) else { return Ok(None) };
         sharpen(&mut found, if below == 0 { f64::NEG_INFINITY } else { lower }, upper);
-        let shift = Shift { place, lower, upper, below, above, middle, attempt: 0 };
+        let shift = Shift { place, lower, upper, below, above, middle, attempt: 0, aims: self.aims() };
         Ok(self.finish(&shift, found).ok().map(|band| Band { early: true, ..band }))
     }
 
@@ -319,7 +329,7 @@ impl Piece {
         let enough = if both { ENOUGH * right } else { 0.0 };
         let spacing = (left + right) / aim;
         let lowest = sigma <= left;
-        let mut look = if lowest { LOWEST_LOOK } else { FIRST_LOOK + ((aim - TARGET) / PER_BLOCK) as usize };
+        let mut look = if lowest { LOWEST_LOOK } else { (FIRST_LOOK + (aim - 72.0) / PER_BLOCK) as usize };
         for blocks in 1..=most {
             krylov.step(poll)?;
             if blocks != most && blocks != look {
@@ -394,11 +404,6 @@ impl Piece {
             errors: found.iter().map(|found| found.error * self.unit).collect(),
         })
     }
-}
-
-/// How many eigenvalues a process looks for between slices above so many.
-fn aim(below: usize, above: usize) -> f64 {
-    0.5 * (target(below) + target(above))
 }
 
 /// One process.

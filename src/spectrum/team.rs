@@ -17,7 +17,7 @@ use std::{
 use super::{
     SpectrumError,
     band::Band,
-    part::{End, Ending, Piece, Shift, Tools, target},
+    part::{End, Ending, Piece, Shift, Tools},
     poll::Poll,
     slice::{Side, Sides},
     timings::Timings,
@@ -393,7 +393,8 @@ impl Team {
         let chain = &state.chains[at];
         let expected = self.expected(state, limit);
         // What the last process sees on its right side may be the end.
-        let perhaps = if chain.slots.is_empty() { 0 } else { (0.5 * target(placed[at].1)) as usize };
+        let perhaps =
+            if chain.slots.is_empty() { 0 } else { (0.5 * self.pieces[at].aims().above(placed[at].1)) as usize };
         if chain.failed.is_some() || chain.ending.is_some() || chain.placing || expected + perhaps >= self.count {
             return None;
         }

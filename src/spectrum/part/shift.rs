@@ -1,21 +1,45 @@
 //! Where the shifts of a chain are, in the scaled unit, and how many eigenvalues there are to be between two of them.
 
-/// Eigenvalues that the lowest slice aims at, if it were as wide on both sides of zero. The smallest ones are a small
-/// part of the distance from its upper end, and what rounding does to that is a large part of them.
-pub(super) const LOWEST: f64 = 54.0;
-/// Eigenvalues that the slices after it aim at, so that some hundred eigenvalues cost little.
-pub(super) const TARGET: f64 = 72.0;
-/// Eigenvalues that the other slices aim at. Wider ones take fewer factorisations and solves and a longer basis.
-const WIDE: f64 = 100.0;
+use super::{FEW_ROWS, Piece};
 
-/// How many eigenvalues the slice above so many aims at.
-pub(in crate::spectrum) fn target(above: usize) -> f64 {
-    if above == 0 {
-        LOWEST
-    } else if (above as f64) < 2.0 * TARGET {
-        TARGET
-    } else {
-        WIDE
+/// How many eigenvalues the slices of a piece aim at.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::spectrum) struct Aims {
+    /// Those after the lowest one, so that some hundred eigenvalues cost little.
+    next: f64,
+    /// The others. Wider ones take fewer factorisations and solves and a longer basis.
+    wide: f64,
+}
+
+impl Aims {
+    /// What the lowest slice aims at, if it were as wide on both sides of zero. The smallest eigenvalues are a small
+    /// part of the distance from its upper end, and what rounding does to that is a large part of them.
+    pub(super) const LOWEST: f64 = 54.0;
+    /// Where a basis would come to hold much of the space.
+    pub(super) const FEW: Self = Self { next: 54.0, wide: 87.0 };
+    pub(super) const MANY: Self = Self { next: 72.0, wide: 100.0 };
+
+    /// What the slice above so many eigenvalues aims at.
+    pub(in crate::spectrum) fn above(self, above: usize) -> f64 {
+        if above == 0 {
+            Self::LOWEST
+        } else if (above as f64) < 2.0 * self.next {
+            self.next
+        } else {
+            self.wide
+        }
+    }
+
+    /// How many eigenvalues a process looks for between slices above so many.
+    pub(super) fn between(self, below: usize, above: usize) -> f64 {
+        0.5 * (self.above(below) + self.above(above))
+    }
+}
+
+impl Piece {
+    /// How many eigenvalues its slices aim at.
+    pub(in crate::spectrum) fn aims(&self) -> Aims {
+        if self.pencil.order() < FEW_ROWS { Aims::FEW } else { Aims::MANY }
     }
 }
 
@@ -51,8 +75,8 @@ impl End {
     }
 
     /// The end of a slice.
-    pub(super) fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize)) -> Self {
-        let step = distance(lower, upper, counts);
+    pub(super) fn new(place: u32, lower: f64, upper: f64, counts: (usize, usize), aims: Aims) -> Self {
+        let step = distance(lower, upper, counts, aims);
         Self { place: place + 1, upper, above: counts.1, step, middle: upper + 0.5 * step }
     }
 }
@@ -67,6 +91,7 @@ pub(in crate::spectrum) struct Shift {
     pub above: usize,
     pub(super) middle: f64,
     pub(super) attempt: u32,
+    pub(super) aims: Aims,
 }
 
 impl Shift {
@@ -76,7 +101,7 @@ impl Shift {
     }
 
     pub(in crate::spectrum) fn end(&self) -> End {
-        End::new(self.place, self.lower, self.upper, (self.below, self.above))
+        End::new(self.place, self.lower, self.upper, (self.below, self.above), self.aims)
     }
 
     /// Where to try next when an eigenvalue turned out to be too near: moved by a rule that knows nothing but this
@@ -87,11 +112,11 @@ impl Shift {
 }
 
 /// The distance to the next shift, from what the slice before had.
-fn distance(lower: f64, upper: f64, (below, above): (usize, usize)) -> f64 {
+fn distance(lower: f64, upper: f64, (below, above): (usize, usize), aims: Aims) -> f64 {
     let count = (above - below).max(1) as f64;
     // The first slice begins at zero and is half as wide as the one after it.
     let before = if lower == 0.0 { 2.0 * upper } else { upper - lower };
-    (target(above) / count * (upper - lower)).clamp(0.5 * before, 2.5 * before)
+    (aims.above(above) / count * (upper - lower)).clamp(0.5 * before, 2.5 * before)
 }
 
 /// Where a chain can end, by what the process at its last shift has seen on its right side.
