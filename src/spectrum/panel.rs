@@ -321,16 +321,13 @@ impl Kernel for PanelUpdate<'_, '_, '_> {
                         _ => factors,
                     };
                     let sums = &mut sums[..range.len()];
-                    match other {
-                        Some(other) => {
-                            let next = if side == 0 { [next(number + 1), next(number + 2)] } else { [&[][..]; 2] };
-                            let factors = [&factors[number], &factors[number + 1]];
-                            subtotal(lanes, [one, other], next, factors, sums);
-                        }
-                        None => {
-                            let next = if side == 0 { next(number) } else { &[] };
-                            subtotal(lanes, [one], [next], [&factors[number]], sums);
-                        }
+                    if let Some(other) = other {
+                        let next = if side == 0 { [next(number + 1), next(number + 2)] } else { [&[][..]; 2] };
+                        let factors = [&factors[number], &factors[number + 1]];
+                        subtotal(lanes, [one, other], next, factors, sums);
+                    } else {
+                        let next = if side == 0 { next(number) } else { &[] };
+                        subtotal(lanes, [one], [next], [&factors[number]], sums);
                     }
                 }
             }
