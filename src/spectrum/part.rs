@@ -26,9 +26,10 @@ const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 48;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
-/// slices of 72 eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process, which
+/// slices of [`USUAL`] eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process, which
 /// needs fewer, for nothing is beyond its left side.
 const FIRST_LOOK: f64 = 26.0;
+const USUAL: f64 = 72.0;
 const PER_BLOCK: f64 = 4.5;
 const LOWEST_LOOK: usize = 19;
 /// A process with b blocks has mostly seen 2 b eigenvalues on each side, but for so many.
@@ -329,7 +330,7 @@ impl Piece {
         let enough = if both { ENOUGH * right } else { 0.0 };
         let spacing = (left + right) / aim;
         let lowest = sigma <= left;
-        let mut look = if lowest { LOWEST_LOOK } else { (FIRST_LOOK + (aim - 72.0) / PER_BLOCK) as usize };
+        let mut look = if lowest { LOWEST_LOOK } else { (FIRST_LOOK + (aim - USUAL) / PER_BLOCK) as usize };
         for blocks in 1..=most {
             krylov.step(poll)?;
             if blocks != most && blocks != look {

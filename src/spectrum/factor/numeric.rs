@@ -3,6 +3,7 @@
 use super::{
     Symbolic,
     front::{Clear, Front, largest},
+    solve::{Columns, by_size},
 };
 use crate::{
     laplacian::{MassMatrix, Symmetric},
@@ -193,33 +194,25 @@ fn pack(front: &[f64], size: usize, width: usize, below: usize, mut values: &mut
             }
         }
         let (rows, rest) = rest.split_at_mut(count * (all - first - count));
-        let from = Columns { front: &front[first * size..(first + count) * size], size, first: first + count };
-        match count {
-            1 => from.pack::<1>(rows),
-            2 => from.pack::<2>(rows),
-            3 => from.pack::<3>(rows),
-            4 => from.pack::<4>(rows),
-            5 => from.pack::<5>(rows),
-            6 => from.pack::<6>(rows),
-            7 => from.pack::<7>(rows),
-            _ => from.pack::<8>(rows),
-        }
+        let front = &front[first * size..(first + count) * size];
+        by_size(count as u32, ByRows { front, size, first: first + count, to: rows });
         values = rest;
     }
 }
 
-/// Some columns of a front, from a row on.
-struct Columns<'a> {
+/// Some columns of a front from a row on, and where to write them by rows.
+struct ByRows<'a> {
     front: &'a [f64],
     size: usize,
     first: usize,
+    to: &'a mut [f64],
 }
 
-impl Columns<'_> {
-    /// Writes them by rows, so many of them that the compiler knows.
-    fn pack<const W: usize>(&self, to: &mut [f64]) {
+impl Columns for ByRows<'_> {
+    fn run<const W: usize>(self) {
+        let Self { front, size, first, to } = self;
         let to = to.as_chunks_mut::<W>().0;
-        let columns: [&[f64]; W] = std::array::from_fn(|at| &self.front[at * self.size + self.first..][..to.len()]);
+        let columns: [&[f64]; W] = std::array::from_fn(|at| &front[at * size + first..][..to.len()]);
         for (row, to) in to.iter_mut().enumerate() {
             for (to, column) in to.iter_mut().zip(columns) {
                 *to = column[row];

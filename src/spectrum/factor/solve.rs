@@ -120,13 +120,13 @@ impl Kernel for Backward<'_> {
 /// Most supernodes have a few columns and a handful of rows. What their solves cost is less the arithmetic than what
 /// comes before it and jumps that cannot be foretold, so that there is one jump for the number of columns, and then
 /// one loop over rows.
-trait Columns {
+pub(super) trait Columns {
     fn run<const W: usize>(self);
 }
 
 /// Calls the piece of the given size, 1 to 8.
 #[inline(always)]
-fn by_size(size: u32, piece: impl Columns) {
+pub(super) fn by_size(size: u32, piece: impl Columns) {
     match size {
         1 => piece.run::<1>(),
         2 => piece.run::<2>(),
