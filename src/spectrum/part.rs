@@ -26,8 +26,8 @@ const MOST: f64 = 1.4;
 /// Blocks of a basis after which a process gives up.
 const BLOCKS: usize = 48;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
-/// slices of [`USUAL`] eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process, which
-/// needs fewer, for nothing is beyond its left side.
+/// slices of [`USUAL`] eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process,
+/// which needs fewer, for nothing is beyond its left side.
 const FIRST_LOOK: f64 = 26.0;
 const USUAL: f64 = 72.0;
 const PER_BLOCK: f64 = 4.5;
