@@ -46,6 +46,7 @@ mod implicit_ql;
 mod krylov;
 mod lanes;
 mod normalise;
+mod pair;
 mod panel;
 mod part;
 mod pencil;

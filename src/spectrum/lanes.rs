@@ -53,6 +53,9 @@ pub(super) trait Lanes: Copy {
     fn fetch(self, _values: &[f32; 16]) {}
     /// The same for the second cache, where there is room for more.
     fn fetch_near(self, _values: &[f32; 16]) {}
+    fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// Two rows in single precision, the second behind the first.
+    fn narrow(self, rows: [Self::Reg; 2]) -> Self::Wide;
     /// The first and the last eight in double precision.
     fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
     /// Sixteen rows, rounded to single precision, as eight columns.
@@ -168,6 +171,14 @@ impl Lanes for Avx512 {
         self.0.avx512f._mm512_fmadd_ps(a, b, c)
     }
     #[inline(always)]
+    fn wide_add(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_add_ps(a, b)
+    }
+    #[inline(always)]
+    fn narrow(self, [a, b]: [__m512d; 2]) -> __m512 {
+        pulp::cast([self.0.avx512f._mm512_cvtpd_ps(a), self.0.avx512f._mm512_cvtpd_ps(b)])
+    }
+    #[inline(always)]
     fn fetch(self, values: &[f32; 16]) {
         fetch::<_MM_HINT_T0>(values);
     }
@@ -277,6 +288,14 @@ impl Lanes for Avx2 {
         [self.0.fma._mm256_fmadd_ps(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_ps(a[1], b[1], c[1])]
     }
     #[inline(always)]
+    fn wide_add(self, a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
+        [self.0.avx._mm256_add_ps(a[0], b[0]), self.0.avx._mm256_add_ps(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn narrow(self, [a, b]: [[__m256d; 2]; 2]) -> [__m256; 2] {
+        [self.singles(a), self.singles(b)]
+    }
+    #[inline(always)]
     fn widen(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {
         value.map(|half| self.doubles(half))
     }
@@ -284,8 +303,7 @@ impl Lanes for Avx2 {
     fn columns(self, rows: &[Row; 16]) -> [[__m256; 2]; WIDTH] {
         let mut halves = [[pulp::cast([0.0_f32; 8]); 8]; 2];
         for (row, to) in rows.iter().zip(halves.as_flattened_mut()) {
-            let [low, high] = self.load(row);
-            *to = pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)]);
+            *to = self.singles(self.load(row));
         }
         let (low, high) = (transpose(self.0.avx, halves[0]), transpose(self.0.avx, halves[1]));
         std::array::from_fn(|at| [low[at], high[at]])
@@ -300,6 +318,10 @@ impl Lanes for Avx2 {
 
 #[cfg(target_arch = "x86_64")]
 impl Avx2 {
+    #[inline(always)]
+    fn singles(self, [low, high]: [__m256d; 2]) -> __m256 {
+        pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)])
+    }
     #[inline(always)]
     fn doubles(self, value: __m256) -> [__m256d; 2] {
         let [low, high]: [__m128; 2] = pulp::cast(value);
@@ -404,6 +426,14 @@ impl Lanes for Plain {
     #[inline(always)]
     fn wide_add_mul(self, c: [f32; 16], a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
         std::array::from_fn(|at| a[at].mul_add(b[at], c[at]))
+    }
+    #[inline(always)]
+    fn wide_add(self, a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
+        std::array::from_fn(|at| a[at] + b[at])
+    }
+    #[inline(always)]
+    fn narrow(self, rows: [[f64; WIDTH]; 2]) -> [f32; 16] {
+        std::array::from_fn(|at| rows[at / WIDTH][at % WIDTH] as f32)
     }
     #[inline(always)]
     fn widen(self, value: [f32; 16]) -> [[f64; WIDTH]; 2] {

@@ -10,6 +10,7 @@ use std::ops::Range;
 use super::{
     block::{self, Square},
     lanes::{Kernel, Lanes, Row, WIDTH},
+    pair::after,
     product::{GROUP, Product},
 };
 
@@ -28,7 +29,7 @@ pub(super) const fn panels(rows: usize) -> usize {
 
 /// Reads sixteen rows into a panel's registers.
 #[inline(always)]
-fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
+pub(super) fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
     match rows.as_array::<ROWS>() {
         Some(rows) => lanes.columns(rows),
         None => lanes.columns(&std::array::from_fn(|at| rows.get(at).copied().unwrap_or_default())),
@@ -73,23 +74,16 @@ impl Kernel for Normalise<'_> {
 /// Panels of both factors that stay in a near cache.
 const TILE: usize = 32;
 
-/// `B w`, or `B w − U M` if such a pair is given.
-#[derive(Clone, Copy)]
-pub(super) struct Right<'a> {
+/// Products `Vᵢᵀ R` of every block of a basis with `R = B w`, or `B w − U M` if such a pair is given.
+///
+/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles. They are
+/// added to what is there, 64 rows for each block, of which [`totals`] makes squares.
+pub(super) struct PanelDots<'a, 'b> {
+    pub basis: &'a [&'b [Panel]],
     pub mass: &'a Product,
     pub w: &'a [Row],
     /// U and M.
     pub less: Option<(&'a [Row], &'a Square)>,
-}
-
-/// Products `Vᵢᵀ R` of every block of a basis with each of some right sides: of the first one with all blocks, then of
-/// the next. A block comes from afar, and once for all of them.
-///
-/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles. They are
-/// added to what is there, 64 rows for each block and right side, of which [`totals`] makes squares.
-pub(super) struct PanelDots<'a, 'b, const N: usize> {
-    pub basis: &'a [&'b [Panel]],
-    pub right: [Right<'a>; N],
     /// Of one [`STRETCH`] or several.
     pub rows: Range<usize>,
     pub room: &'a mut [Row],
@@ -98,40 +92,33 @@ pub(super) struct PanelDots<'a, 'b, const N: usize> {
 /// Rows by which the kernels below can be divided.
 pub(super) const STRETCH: usize = TILE * ROWS;
 
-impl<const N: usize> Kernel for PanelDots<'_, '_, N> {
+impl Kernel for PanelDots<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, right, rows, room } = self;
-        let less: [Option<[L::Reg; WIDTH]>; N] =
-            std::array::from_fn(|at| right[at].less.map(|(_, factor)| factor.each_ref().map(|row| lanes.load(row))));
+        let Self { basis, mass, w, less, rows, room } = self;
+        let less = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
         let len = rows.end;
-        let mut tiles = [[Panel::default(); TILE]; N];
+        let mut tile = [Panel::default(); TILE];
         let mut group = [[0.0; WIDTH]; ROWS];
         for at in rows.start / STRETCH..len.div_ceil(STRETCH) {
             let rows = at * STRETCH..len.min((at + 1) * STRETCH);
             let used = panels(rows.len());
-            for ((tile, right), factor) in tiles.iter_mut().zip(&right).zip(&less) {
-                for (panel, first) in tile[..used].iter_mut().zip(rows.clone().step_by(ROWS)) {
-                    let group = &mut group[..ROWS.min(len - first)];
-                    right.mass.group(lanes, right.w, first / ROWS, group);
-                    if let (Some((u, _)), Some(factor)) = (&right.less, factor) {
-                        for (to, u) in group.iter_mut().zip(&u[first..]) {
-                            *to = lanes.row(block::less(lanes, lanes.load(to), u, factor));
-                        }
+            for (panel, first) in tile[..used].iter_mut().zip(rows.step_by(ROWS)) {
+                let group = &mut group[..ROWS.min(len - first)];
+                mass.group(lanes, w, first / ROWS, group);
+                if let Some((u, factor)) = &less {
+                    for (to, u) in group.iter_mut().zip(&u[first..]) {
+                        *to = lanes.row(block::less(lanes, lanes.load(to), u, factor));
                     }
-                    panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
                 }
+                panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
             }
             let range = at * TILE..at * TILE + used;
-            for (number, block) in basis.iter().enumerate() {
+            for ((number, block), total) in basis.iter().enumerate().zip(room.chunks_mut(WIDTH * WIDTH)) {
                 let next = after(basis, number, &range, Some(range.end));
-                let block = &block[range.clone()];
-                for (side, tile) in tiles.iter().enumerate() {
-                    let total = &mut room[(side * basis.len() + number) * WIDTH * WIDTH..][..WIDTH * WIDTH];
-                    with_tile(lanes, block, if side == 0 { next } else { &[] }, &tile[..used], total);
-                }
+                with_tile(lanes, &block[range.clone()], next, &tile[..used], total);
             }
         }
     }
@@ -184,17 +171,6 @@ impl Kernel for Recur<'_, '_> {
         }
         totals(room, sums);
         gram.map(|sum| lanes.row(sum))
-    }
-}
-
-/// What comes after some panels of a block: the same ones of the next block, and after the last block those of the
-/// first one from `then` on. None of them may be there.
-#[inline(always)]
-fn after<'a>(basis: &[&'a [Panel]], number: usize, range: &Range<usize>, then: Option<usize>) -> &'a [Panel] {
-    match (basis.get(number + 1), then) {
-        (Some(next), _) => &next[range.clone()],
-        (None, Some(then)) => basis[0].get(then..then + range.len()).unwrap_or_default(),
-        (None, None) => &[],
     }
 }
 
@@ -265,11 +241,12 @@ const PAGE: usize = 8;
 /// `w −= U M` if such a pair is given.
 ///
 /// It goes from the end to the beginning, for the end of the basis is what the cache has of it after [`PanelDots`].
-pub(super) struct PanelUpdate<'a, 'b, 'c> {
+pub(super) struct PanelUpdate<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
     pub factors: &'a [Single],
     pub w: &'a mut [Row],
-    pub less: &'a mut Less<'c>,
+    /// U and M.
+    pub less: Option<(&'a [Row], &'a Square)>,
     /// Of one [`STRETCH`] or several.
     pub rows: Range<usize>,
 }
@@ -277,90 +254,40 @@ pub(super) struct PanelUpdate<'a, 'b, 'c> {
 /// Eight by eight numbers in single precision, by rows.
 pub(super) type Single = [[f32; WIDTH]; WIDTH];
 
-/// What [`PanelUpdate`] subtracts besides.
-pub(super) enum Less<'a> {
-    Nothing,
-    /// U M.
-    Product(&'a [Row], &'a Square),
-    /// U M, where U is changed itself thereafter: it loses Σ Vᵢ Dᵢ, and its copy in single precision is made anew.
-    Changed {
-        u: &'a mut [Row],
-        m: &'a Square,
-        factors: &'a [Single],
-        copy: &'a mut [Panel],
-    },
-}
-
-impl Kernel for PanelUpdate<'_, '_, '_> {
+impl Kernel for PanelUpdate<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { basis, factors, w, less, rows } = self;
-        let times = match &*less {
-            Less::Nothing => [lanes.zero(); WIDTH],
-            Less::Product(_, m) | Less::Changed { m, .. } => m.each_ref().map(|row| lanes.load(row)),
-        };
-        let mut sums = [[Panel::default(); PAGE]; 2];
+        let less = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
+        let mut sums = [Panel::default(); PAGE];
         let start = rows.start / ROWS;
         for (at, w) in w[rows].chunks_mut(PAGE * ROWS).enumerate().rev() {
             let first = start + at * PAGE;
             let range = first..first + panels(w.len());
-            for sums in &mut sums {
-                sums[..range.len()].fill(Panel::default());
-            }
-            let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
+            let sums = &mut sums[..range.len()];
+            sums.fill(Panel::default());
             // Two blocks at a time, so that sums are loaded and stored half as often.
             for number in (0..basis.len()).step_by(2) {
                 let next = |number| after(basis, number, &range, first.checked_sub(PAGE));
-                let (one, other) =
-                    (&basis[number][range.clone()], basis.get(number + 1).map(|block| &block[range.clone()]));
-                for (side, sums) in sums[..sides].iter_mut().enumerate() {
-                    let factors = match &*less {
-                        Less::Changed { factors: others, .. } if side == 1 => *others,
-                        _ => factors,
-                    };
-                    let sums = &mut sums[..range.len()];
-                    if let Some(other) = other {
-                        let next = if side == 0 { [next(number + 1), next(number + 2)] } else { [&[][..]; 2] };
-                        let factors = [&factors[number], &factors[number + 1]];
-                        subtotal(lanes, [one, other], next, factors, sums);
-                    } else {
-                        let next = if side == 0 { next(number) } else { &[] };
-                        subtotal(lanes, [one], [next], [&factors[number]], sums);
-                    }
+                let one = &basis[number][range.clone()];
+                if let Some(other) = basis.get(number + 1) {
+                    let factors = [&factors[number], &factors[number + 1]];
+                    let blocks = [one, &other[range.clone()]];
+                    subtotal(lanes, blocks, [next(number + 1), next(number + 2)], factors, sums);
+                } else {
+                    subtotal(lanes, [one], [next(number)], [&factors[number]], sums);
                 }
             }
-            let mut changes = [[[0.0; WIDTH]; ROWS]; 2];
-            for (at, (group, w)) in range.zip(w.chunks_mut(ROWS)).enumerate() {
-                for (changes, sums) in changes.iter_mut().zip(&sums[..sides]) {
-                    let rows = lanes.rows(std::array::from_fn(|column| lanes.wide(&sums[at].0[column])));
-                    for (to, row) in changes.iter_mut().zip(rows) {
-                        *to = lanes.row(row);
-                    }
+            for ((group, w), sums) in range.zip(w.chunks_mut(ROWS)).zip(sums.iter()) {
+                let changes = lanes.rows(std::array::from_fn(|column| lanes.wide(&sums.0[column])));
+                for (w, change) in w.iter_mut().zip(changes) {
+                    *w = lanes.row(lanes.sub(lanes.load(w), change));
                 }
-                let [change, other] = &changes;
-                let rows = group * ROWS..group * ROWS + w.len();
-                match &mut *less {
-                    Less::Nothing => {
-                        for (w, change) in w.iter_mut().zip(change) {
-                            *w = lanes.row(lanes.sub(lanes.load(w), lanes.load(change)));
-                        }
-                    }
-                    Less::Product(u, _) => {
-                        for ((w, change), u) in w.iter_mut().zip(change).zip(&u[rows]) {
-                            let left = lanes.sub(lanes.load(w), lanes.load(change));
-                            *w = lanes.row(block::less(lanes, left, u, &times));
-                        }
-                    }
-                    Less::Changed { u, copy, .. } => {
-                        let u = &mut u[rows];
-                        for ((w, change), (u, other)) in w.iter_mut().zip(change).zip(u.iter_mut().zip(other)) {
-                            let left = lanes.sub(lanes.load(w), lanes.load(change));
-                            *w = lanes.row(block::less(lanes, left, u, &times));
-                            *u = lanes.row(lanes.sub(lanes.load(u), lanes.load(other)));
-                        }
-                        copy[group].0 = read(lanes, u).map(|column| lanes.wide_row(column));
+                if let Some((u, factor)) = &less {
+                    for (w, u) in w.iter_mut().zip(&u[group * ROWS..]) {
+                        *w = lanes.row(block::less(lanes, lanes.load(w), u, factor));
                     }
                 }
             }

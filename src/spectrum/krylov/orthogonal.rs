@@ -24,7 +24,8 @@ use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
     block::{Dots, Square, Update},
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Less, Panel, PanelDots, PanelUpdate, Right, STRETCH, Single, totals},
+    pair::{PairDots, PairUpdate, Squares},
+    panel::{Panel, PanelDots, PanelUpdate, STRETCH, totals},
     poll::{Poll, Stop},
     product::{Multiply, Product},
     timings::Cost,
@@ -153,12 +154,11 @@ impl Krylov<'_> {
                 let count = older.min(FIRST);
                 let Scratch { blocks, images, now, work, room, .. } = &mut *self.scratch;
                 let mut sums = seen;
+                let less = Some((now.rows(), along));
                 if sums.is_empty() {
-                    let right = [Right { mass: &Product::Unit, w: work.rows(), less: Some((now.rows(), along)) }];
-                    sums = products(&panels(&images[..count]), right, room, poll)?;
+                    sums = products(&panels(&images[..count]), &Product::Unit, work.rows(), less, room, poll)?;
                 }
-                let less = Less::Product(now.rows(), along);
-                take_out(&panels(&blocks[..count]), &single(&sums), work.rows_mut(), less, poll)?;
+                take_out(&panels(&blocks[..count]), &sums, work.rows_mut(), less, poll)?;
                 self.losses.round(&sums);
                 (count == older).then(|| largest(&sums))
             }
@@ -173,29 +173,39 @@ impl Krylov<'_> {
     /// `w' = w − Σ Vₖ Dₖ + V Σ CₖᵀDₖ`, so that these two neighbours stay orthogonal to the second order, too.
     fn pair(&mut self, along: &Square, poll: &mut Poll) -> Result<f64, Stop> {
         let older = self.blocks() - 1;
-        let Scratch { blocks, now, work, image, room, .. } = &mut *self.scratch;
+        let Scratch { blocks, now, work, image, .. } = &mut *self.scratch;
         let (basis, rest) = blocks.split_at_mut(older);
         let basis = panels(basis);
-        let right = [
-            Right { mass: &Product::Unit, w: image.rows(), less: None },
-            Right { mass: &self.pencil.mass, w: work.rows(), less: Some((image.rows(), along)) },
-        ];
-        let mut sums = products(&basis, right, room, poll)?;
-        let (c, d) = sums.split_at_mut(older);
+        let mut sums: Vec<Squares> = vec![Squares::default(); older];
+        for rows in stretches(work.rows().len(), older) {
+            poll.spend(rows.len() * older * WIDTH)?;
+            let (mass, v, w, sums) = (&self.pencil.mass, image.rows(), work.rows(), &mut sums);
+            dispatch(PairDots { basis: &basis, v, mass, w, along, rows, sums });
+        }
         // It is orthogonal to the block before it to more digits than are seen here.
-        c[older - 1] = Square::default();
+        for [c, _] in &mut sums[older - 1] {
+            *c = Row::default();
+        }
+        let side = |side: usize| -> Vec<Square> { sums.iter().map(|sums| sums.map(|rows| rows[side])).collect() };
+        let (c, d) = (side(0), side(1));
         let along: Square = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                let both = c.iter().zip(&*d).flat_map(|(c, d)| c.iter().zip(d));
+                let both = c.iter().zip(&d).flat_map(|(c, d)| c.iter().zip(d));
                 both.fold(along[i][j], |left, (c, d)| left - c[i] * d[j])
             })
         });
         if let Some(alpha) = self.alpha.last_mut() {
             *alpha = symmetric(&along);
         }
-        let (factors, others) = (single(d), single(c));
-        let less = Less::Changed { u: now.rows_mut(), m: &along, factors: &others, copy: &mut rest[0] };
-        take_out(&basis, &factors, work.rows_mut(), less, poll)?;
+        let row = |[c, d]: [Row; 2]| std::array::from_fn(|at| if at < WIDTH { c[at] } else { d[at - WIDTH] } as f32);
+        let factors: Vec<_> = sums.iter().map(|sums| sums.map(row)).collect();
+        let (w, v, copy) = (work.rows_mut(), now.rows_mut(), &mut rest[0]);
+        poll.meter.timings.pairs += 2 * older;
+        poll.meter.timings.passed += older;
+        for rows in stretches(w.len(), older).rev() {
+            poll.spend(rows.len() * older * WIDTH)?;
+            dispatch(PairUpdate { basis: &basis, factors: &factors, v, copy, w, along: &along, rows });
+        }
         // The newest block has become shorter by half of CᵀC, and T is that of blocks of length one: what is below its
         // diagonal block there is so much more, and what is beside it so much less.
         let lacks: Square = std::array::from_fn(|i| {
@@ -207,10 +217,10 @@ impl Krylov<'_> {
                 *beta -= less;
             }
         }
-        self.losses.mend(largest(c), largest(&[along]).max(self.coupled()));
+        self.losses.mend(largest(&c), largest(&[along]).max(self.coupled()));
         self.losses.shortened = Some(lacks);
-        self.losses.round(d);
-        Ok(largest(d))
+        self.losses.round(&d);
+        Ok(largest(&d))
     }
 
     /// Makes `work` orthogonal to the first so many blocks, but for the last of them if the basis is in single
@@ -223,9 +233,8 @@ impl Krylov<'_> {
         match self.basis {
             Basis::Single { .. } => {
                 let basis = panels(&basis[..blocks.saturating_sub(1)]);
-                let right = [Right { mass: &self.pencil.mass, w: work.rows(), less: None }];
-                sums = products(&basis, right, room, poll)?;
-                take_out(&basis, &single(&sums), work.rows_mut(), Less::Nothing, poll)?;
+                sums = products(&basis, &self.pencil.mass, work.rows(), None, room, poll)?;
+                take_out(&basis, &sums, work.rows_mut(), None, poll)?;
             }
             Basis::Double(locked) => {
                 let all: Vec<&[Row]> = exact[..blocks].iter().chain(locked).map(Buffer::rows).collect();
@@ -316,18 +325,19 @@ impl Krylov<'_> {
 }
 
 /// [`PanelDots`] over all rows.
-fn products<const N: usize>(
+fn products(
     basis: &[&[Panel]],
-    right: [Right; N],
+    mass: &Product,
+    w: &[Row],
+    less: Option<(&[Row], &Square)>,
     room: &mut Vec<Row>,
     poll: &mut Poll,
 ) -> Result<Vec<Square>, Stop> {
     room.clear();
-    room.resize(N * basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
-    let len = right.first().map_or(0, |right| right.w.len());
-    for rows in stretches(len, basis.len()) {
+    room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
+    for rows in stretches(w.len(), basis.len()) {
         poll.spend(rows.len() * basis.len() * WIDTH)?;
-        dispatch(PanelDots { basis, right, rows, room });
+        dispatch(PanelDots { basis, mass, w, less, rows, room });
     }
     let mut sums = Vec::new();
     totals(room, &mut sums);
@@ -337,17 +347,17 @@ fn products<const N: usize>(
 /// [`PanelUpdate`] of all rows.
 fn take_out(
     basis: &[&[Panel]],
-    factors: &[Single],
+    factors: &[Square],
     w: &mut [Row],
-    mut less: Less,
+    less: Option<(&[Row], &Square)>,
     poll: &mut Poll,
 ) -> Result<(), Stop> {
-    let sides = 1 + usize::from(matches!(less, Less::Changed { .. }));
-    poll.meter.timings.pairs += sides * basis.len();
+    poll.meter.timings.pairs += basis.len();
     poll.meter.timings.passed += basis.len();
+    let factors: Vec<_> = factors.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect();
     for rows in stretches(w.len(), basis.len()).rev() {
         poll.spend(rows.len() * basis.len() * WIDTH)?;
-        dispatch(PanelUpdate { basis, factors, w, less: &mut less, rows });
+        dispatch(PanelUpdate { basis, factors: &factors, w, less, rows });
     }
     Ok(())
 }
@@ -360,10 +370,6 @@ fn stretches(len: usize, blocks: usize) -> impl DoubleEndedIterator<Item = Range
 
 fn panels(blocks: &[Vec<Panel>]) -> Vec<&[Panel]> {
     blocks.iter().map(Vec::as_slice).collect()
-}
-
-fn single(squares: &[Square]) -> Vec<Single> {
-    squares.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect()
 }
 
 /// The symmetric part.
