@@ -46,7 +46,6 @@ mod implicit_ql;
 mod krylov;
 mod lanes;
 mod normalise;
-mod pair;
 mod panel;
 mod part;
 mod pencil;

@@ -14,7 +14,7 @@ use super::{
     block::{Combine, Dots, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Normalise, Panel, Recur, panels},
+    panel::{Normalise, Panel, Recur, Sums, panels, total},
     pencil::Pencil,
     poll::{Poll, Stop},
     product::Multiply,
@@ -55,7 +55,6 @@ pub(super) struct Scratch {
     image: Buffer,
     small: Vec<f64>,
     tails: Vec<Row>,
-    room: Vec<Row>,
     #[cfg(test)]
     pub tamper: super::faults::Tamper,
 }
@@ -233,14 +232,14 @@ impl<'a> Krylov<'a> {
     /// blocks, if that is all it has to look at.
     fn recur(&mut self) -> (Square, Vec<Square>) {
         let few = matches!(self.basis, Basis::Single { .. }) && self.blocks() > FIRST + 1 && !self.due();
-        let Scratch { past, work, image, images, room, .. } = &mut *self.scratch;
-        let (mut along, mut seen) = ([Square::default()], Vec::new());
+        let Scratch { past, work, image, images, .. } = &mut *self.scratch;
+        let mut along = [Square::default()];
+        let mut seen = vec![Sums::default(); if few { FIRST } else { 0 }];
         if let Some(beta) = self.beta.last() {
             let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
             let (past, newest, w) = (past.rows(), image.rows(), work.rows_mut());
-            let images: Vec<&[Panel]> = images.iter().take(if few { FIRST } else { 0 }).map(Vec::as_slice).collect();
-            let sums = &mut seen;
-            along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &images, room, sums });
+            let images: Vec<&[Panel]> = images.iter().take(seen.len()).map(Vec::as_slice).collect();
+            along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &images, sums: &mut seen });
         } else {
             dispatch(Dots { basis: &[image.rows()], t: work.rows(), sums: &mut along });
         }
@@ -253,7 +252,7 @@ impl<'a> Krylov<'a> {
         // False for NaN too.
         self.symmetric &= skew <= 5e-6 * largest;
         self.alpha.push(alpha);
-        (along, seen)
+        (along, seen.iter().map(total).collect())
     }
 
     /// `work = Q R` with `QᵀBQ = 1` by Cholesky's decomposition of the Gram matrix. Q is to be the block `at` of the

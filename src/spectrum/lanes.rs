@@ -12,7 +12,7 @@
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
 #[cfg(target_arch = "x86_64")]
-use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
+use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _mm_prefetch};
 
 pub(super) use self::buffer::Buffer;
 
@@ -23,6 +23,11 @@ pub(super) const WIDTH: usize = 8;
 
 /// One row of a block: entry i of eight vectors.
 pub(super) type Row = [f64; WIDTH];
+
+/// Two rows in single precision, number beside number.
+#[derive(Debug, Clone, Copy, Default)]
+#[repr(C, align(64))]
+pub(super) struct Twin(pub [[f32; 2]; WIDTH]);
 
 /// Arithmetic on rows held in registers.
 pub(super) trait Lanes: Copy {
@@ -44,24 +49,20 @@ pub(super) trait Lanes: Copy {
     fn mul(self, a: Self::Reg, b: Self::Reg) -> Self::Reg;
     /// The sums of the eight numbers in each, added up as by [`sum`].
     fn sums(self, values: [Self::Reg; WIDTH]) -> Self::Reg;
-    fn wide(self, values: &[f32; 16]) -> Self::Wide;
+    fn wide(self, values: &Twin) -> Self::Wide;
     fn wide_splat(self, value: f32) -> Self::Wide;
-    fn wide_row(self, value: Self::Wide) -> [f32; 16];
+    /// Two numbers by turns.
+    fn wide_splat_two(self, values: [f32; 2]) -> Self::Wide;
+    fn twin(self, value: Self::Wide) -> Twin;
     /// `a b + c`
     fn wide_add_mul(self, c: Self::Wide, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// Has these numbers fetched to the first cache, for they are needed soon, where [`MANY`](Self::MANY).
-    fn fetch(self, _values: &[f32; 16]) {}
-    /// The same for the second cache, where there is room for more.
-    fn fetch_near(self, _values: &[f32; 16]) {}
+    fn fetch(self, _values: &Twin) {}
     fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
-    /// Two rows in single precision, the second behind the first.
-    fn narrow(self, rows: [Self::Reg; 2]) -> Self::Wide;
-    /// The first and the last eight in double precision.
-    fn widen(self, value: Self::Wide) -> [Self::Reg; 2];
-    /// Sixteen rows, rounded to single precision, as eight columns.
-    fn columns(self, rows: &[Row; 16]) -> [Self::Wide; WIDTH];
-    /// Eight columns as sixteen rows in double precision.
-    fn rows(self, columns: [Self::Wide; WIDTH]) -> [Self::Reg; 16];
+    /// Two rows in single precision, number beside number.
+    fn beside(self, rows: [Self::Reg; 2]) -> Self::Wide;
+    /// Two such rows in double precision.
+    fn apart(self, value: Self::Wide) -> [Self::Reg; 2];
 
     #[inline(always)]
     fn zero(self) -> Self::Reg {
@@ -95,14 +96,32 @@ pub(super) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
                 self.0.run(self.1)
             }
         }
-        if let Some(simd) = pulp::x86::V4::try_new() {
+        let sets = sets();
+        if let Some(simd) = pulp::x86::V4::try_new().filter(|_| sets > 1) {
             return simd.vectorize(Wide(kernel, Avx512(simd)));
         }
-        if let Some(simd) = pulp::x86::V3::try_new() {
+        if let Some(simd) = pulp::x86::V3::try_new().filter(|_| sets > 0) {
             return simd.vectorize(Wide(kernel, Avx2(simd)));
         }
     }
     kernel.run(Plain)
+}
+
+/// How many of the instruction sets above plain arrays may be used.
+#[cfg(not(test))]
+const fn sets() -> u8 {
+    2
+}
+
+#[cfg(test)]
+fn sets() -> u8 {
+    SETS.get()
+}
+
+#[cfg(test)]
+thread_local! {
+    /// For tests that compare them: on this thread.
+    pub(super) static SETS: std::cell::Cell<u8> = const { std::cell::Cell::new(2) };
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -155,16 +174,20 @@ impl Lanes for Avx512 {
         fours(fours(twos(a, b), twos(c, d)), fours(twos(e, f), twos(g, h)))
     }
     #[inline(always)]
-    fn wide(self, values: &[f32; 16]) -> __m512 {
-        pulp::cast(*values)
+    fn wide(self, values: &Twin) -> __m512 {
+        pulp::cast(values.0)
     }
     #[inline(always)]
     fn wide_splat(self, value: f32) -> __m512 {
         self.0.avx512f._mm512_set1_ps(value)
     }
     #[inline(always)]
-    fn wide_row(self, value: __m512) -> [f32; 16] {
-        pulp::cast(value)
+    fn wide_splat_two(self, values: [f32; 2]) -> __m512 {
+        pulp::cast(self.splat(pulp::cast(values)))
+    }
+    #[inline(always)]
+    fn twin(self, value: __m512) -> Twin {
+        Twin(pulp::cast(value))
     }
     #[inline(always)]
     fn wide_add_mul(self, c: __m512, a: __m512, b: __m512) -> __m512 {
@@ -175,37 +198,24 @@ impl Lanes for Avx512 {
         self.0.avx512f._mm512_add_ps(a, b)
     }
     #[inline(always)]
-    fn narrow(self, [a, b]: [__m512d; 2]) -> __m512 {
-        pulp::cast([self.0.avx512f._mm512_cvtpd_ps(a), self.0.avx512f._mm512_cvtpd_ps(b)])
-    }
-    #[inline(always)]
-    fn fetch(self, values: &[f32; 16]) {
-        fetch::<_MM_HINT_T0>(values);
-    }
-    #[inline(always)]
-    fn fetch_near(self, values: &[f32; 16]) {
-        fetch::<_MM_HINT_T1>(values);
-    }
-    #[inline(always)]
-    fn widen(self, value: __m512) -> [__m512d; 2] {
-        let halves: [__m256; 2] = pulp::cast(value);
-        halves.map(|half| self.0.avx512f._mm512_cvtps_pd(half))
-    }
-    #[inline(always)]
-    fn columns(self, rows: &[Row; 16]) -> [__m512; WIDTH] {
-        let mut halves = [[pulp::cast([0.0_f32; 8]); 8]; 2];
-        for (row, to) in rows.iter().zip(halves.as_flattened_mut()) {
-            *to = self.0.avx512f._mm512_cvtpd_ps(self.load(row));
+    fn fetch(self, values: &Twin) {
+        #[expect(unsafe_code, reason = "the instruction has no safe name")]
+        // SAFETY: it may be given any address, and changes nothing but what a cache holds.
+        unsafe {
+            _mm_prefetch::<_MM_HINT_T0>((&raw const *values).cast());
         }
-        let (low, high) = (transpose(self.0.avx, halves[0]), transpose(self.0.avx, halves[1]));
-        std::array::from_fn(|at| pulp::cast([low[at], high[at]]))
     }
     #[inline(always)]
-    fn rows(self, columns: [__m512; WIDTH]) -> [__m512d; 16] {
-        let halves: [[__m256; 2]; WIDTH] = columns.map(pulp::cast);
-        let low = transpose(self.0.avx, halves.map(|[low, _]| low));
-        let high = transpose(self.0.avx, halves.map(|[_, high]| high));
-        std::array::from_fn(|at| self.0.avx512f._mm512_cvtps_pd(if at < 8 { low[at] } else { high[at - 8] }))
+    fn beside(self, [a, b]: [__m512d; 2]) -> __m512 {
+        let both = pulp::cast([self.0.avx512f._mm512_cvtpd_ps(a), self.0.avx512f._mm512_cvtpd_ps(b)]);
+        let order: [i32; 16] = [0, 8, 1, 9, 2, 10, 3, 11, 4, 12, 5, 13, 6, 14, 7, 15];
+        self.0.avx512f._mm512_permutexvar_ps(pulp::cast(order), both)
+    }
+    #[inline(always)]
+    fn apart(self, value: __m512) -> [__m512d; 2] {
+        let order: [i32; 16] = [0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15];
+        let [a, b]: [__m256; 2] = pulp::cast(self.0.avx512f._mm512_permutexvar_ps(pulp::cast(order), value));
+        [self.0.avx512f._mm512_cvtps_pd(a), self.0.avx512f._mm512_cvtps_pd(b)]
     }
 }
 
@@ -271,17 +281,20 @@ impl Lanes for Avx2 {
         sums
     }
     #[inline(always)]
-    fn wide(self, values: &[f32; 16]) -> [__m256; 2] {
-        let (halves, _) = values.as_chunks::<8>();
-        [pulp::cast(halves[0]), pulp::cast(halves[1])]
+    fn wide(self, values: &Twin) -> [__m256; 2] {
+        pulp::cast(values.0)
     }
     #[inline(always)]
     fn wide_splat(self, value: f32) -> [__m256; 2] {
         [self.0.avx._mm256_set1_ps(value); 2]
     }
     #[inline(always)]
-    fn wide_row(self, value: [__m256; 2]) -> [f32; 16] {
-        pulp::cast(value)
+    fn wide_splat_two(self, values: [f32; 2]) -> [__m256; 2] {
+        pulp::cast(self.splat(pulp::cast(values)))
+    }
+    #[inline(always)]
+    fn twin(self, value: [__m256; 2]) -> Twin {
+        Twin(pulp::cast(value))
     }
     #[inline(always)]
     fn wide_add_mul(self, c: [__m256; 2], a: [__m256; 2], b: [__m256; 2]) -> [__m256; 2] {
@@ -292,77 +305,26 @@ impl Lanes for Avx2 {
         [self.0.avx._mm256_add_ps(a[0], b[0]), self.0.avx._mm256_add_ps(a[1], b[1])]
     }
     #[inline(always)]
-    fn narrow(self, [a, b]: [[__m256d; 2]; 2]) -> [__m256; 2] {
-        [self.singles(a), self.singles(b)]
-    }
-    #[inline(always)]
-    fn widen(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {
-        value.map(|half| self.doubles(half))
-    }
-    #[inline(always)]
-    fn columns(self, rows: &[Row; 16]) -> [[__m256; 2]; WIDTH] {
-        let mut halves = [[pulp::cast([0.0_f32; 8]); 8]; 2];
-        for (row, to) in rows.iter().zip(halves.as_flattened_mut()) {
-            *to = self.singles(self.load(row));
+    fn beside(self, rows: [[__m256d; 2]; 2]) -> [__m256; 2] {
+        let avx = self.0.avx;
+        let mut halves = [avx._mm256_setzero_ps(); 2];
+        for (half, to) in halves.iter_mut().enumerate() {
+            let (a, b) = (avx._mm256_cvtpd_ps(rows[0][half]), avx._mm256_cvtpd_ps(rows[1][half]));
+            *to = pulp::cast([self.0.sse._mm_unpacklo_ps(a, b), self.0.sse._mm_unpackhi_ps(a, b)]);
         }
-        let (low, high) = (transpose(self.0.avx, halves[0]), transpose(self.0.avx, halves[1]));
-        std::array::from_fn(|at| [low[at], high[at]])
+        halves
     }
     #[inline(always)]
-    fn rows(self, columns: [[__m256; 2]; WIDTH]) -> [[__m256d; 2]; 16] {
-        let low = transpose(self.0.avx, columns.map(|[low, _]| low));
-        let high = transpose(self.0.avx, columns.map(|[_, high]| high));
-        std::array::from_fn(|at| self.doubles(if at < 8 { low[at] } else { high[at - 8] }))
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl Avx2 {
-    #[inline(always)]
-    fn singles(self, [low, high]: [__m256d; 2]) -> __m256 {
-        pulp::cast([self.0.avx._mm256_cvtpd_ps(low), self.0.avx._mm256_cvtpd_ps(high)])
-    }
-    #[inline(always)]
-    fn doubles(self, value: __m256) -> [__m256d; 2] {
-        let [low, high]: [__m128; 2] = pulp::cast(value);
-        [self.0.avx._mm256_cvtps_pd(low), self.0.avx._mm256_cvtps_pd(high)]
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn fetch<const HINT: i32>(values: &[f32; 16]) {
-    #[expect(unsafe_code, reason = "the instruction has no safe name")]
-    // SAFETY: it may be given any address, and changes nothing but what a cache holds.
-    unsafe {
-        _mm_prefetch::<HINT>(values.as_ptr().cast());
-    }
-}
-
-/// Eight by eight numbers, turned over.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn transpose(avx: pulp::core_arch::x86::Avx, rows: [__m256; 8]) -> [__m256; 8] {
-    let [a, b, c, d, e, f, g, h] = rows;
-    let pairs = |x, y| (avx._mm256_unpacklo_ps(x, y), avx._mm256_unpackhi_ps(x, y));
-    // Two rows, then four, then eight in a register.
-    let fours = |(xl, xh), (yl, yh)| {
-        [
-            avx._mm256_shuffle_ps::<0x44>(xl, yl),
-            avx._mm256_shuffle_ps::<0xee>(xl, yl),
-            avx._mm256_shuffle_ps::<0x44>(xh, yh),
-            avx._mm256_shuffle_ps::<0xee>(xh, yh),
-        ]
-    };
-    let upper = fours(pairs(a, b), pairs(c, d));
-    let lower = fours(pairs(e, f), pairs(g, h));
-    std::array::from_fn(|at| {
-        if at < 4 {
-            avx._mm256_permute2f128_ps::<0x20>(upper[at], lower[at])
-        } else {
-            avx._mm256_permute2f128_ps::<0x31>(upper[at - 4], lower[at - 4])
+    fn apart(self, value: [__m256; 2]) -> [[__m256d; 2]; 2] {
+        let avx = self.0.avx;
+        let mut rows = [[avx._mm256_setzero_pd(); 2]; 2];
+        for (half, value) in value.into_iter().enumerate() {
+            let [low, high]: [__m128; 2] = pulp::cast(value);
+            rows[0][half] = avx._mm256_cvtps_pd(self.0.sse._mm_shuffle_ps::<0x88>(low, high));
+            rows[1][half] = avx._mm256_cvtps_pd(self.0.sse._mm_shuffle_ps::<0xdd>(low, high));
         }
-    })
+        rows
+    }
 }
 
 /// Arrays, for processors without the above. Where they cannot fuse a multiplication with an addition (x86-64 from
@@ -412,16 +374,20 @@ impl Lanes for Plain {
         values.map(|values| sum(&values))
     }
     #[inline(always)]
-    fn wide(self, values: &[f32; 16]) -> [f32; 16] {
-        *values
+    fn wide(self, values: &Twin) -> [f32; 16] {
+        pulp::cast(values.0)
     }
     #[inline(always)]
     fn wide_splat(self, value: f32) -> [f32; 16] {
         [value; 16]
     }
     #[inline(always)]
-    fn wide_row(self, value: [f32; 16]) -> [f32; 16] {
-        value
+    fn wide_splat_two(self, values: [f32; 2]) -> [f32; 16] {
+        std::array::from_fn(|at| values[at % 2])
+    }
+    #[inline(always)]
+    fn twin(self, value: [f32; 16]) -> Twin {
+        Twin(pulp::cast(value))
     }
     #[inline(always)]
     fn wide_add_mul(self, c: [f32; 16], a: [f32; 16], b: [f32; 16]) -> [f32; 16] {
@@ -432,19 +398,11 @@ impl Lanes for Plain {
         std::array::from_fn(|at| a[at] + b[at])
     }
     #[inline(always)]
-    fn narrow(self, rows: [[f64; WIDTH]; 2]) -> [f32; 16] {
-        std::array::from_fn(|at| rows[at / WIDTH][at % WIDTH] as f32)
+    fn beside(self, rows: [[f64; WIDTH]; 2]) -> [f32; 16] {
+        std::array::from_fn(|at| rows[at % 2][at / 2] as f32)
     }
     #[inline(always)]
-    fn widen(self, value: [f32; 16]) -> [[f64; WIDTH]; 2] {
-        std::array::from_fn(|half| std::array::from_fn(|at| f64::from(value[8 * half + at])))
-    }
-    #[inline(always)]
-    fn columns(self, rows: &[Row; 16]) -> [[f32; 16]; WIDTH] {
-        std::array::from_fn(|column| std::array::from_fn(|row| rows[row][column] as f32))
-    }
-    #[inline(always)]
-    fn rows(self, columns: [[f32; 16]; WIDTH]) -> [[f64; WIDTH]; 16] {
-        std::array::from_fn(|row| std::array::from_fn(|column| f64::from(columns[column][row])))
+    fn apart(self, value: [f32; 16]) -> [[f64; WIDTH]; 2] {
+        std::array::from_fn(|row| std::array::from_fn(|at| f64::from(value[2 * at + row])))
     }
 }

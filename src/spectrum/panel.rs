@@ -1,7 +1,9 @@
-//! Blocks of eight vectors in single precision, for orthogonalisation against many of them.
+//! Blocks of eight vectors in single precision, for orthogonalisation of one or two blocks against many.
 //!
-//! That work is bounded by the memory's bandwidth, so halving the numbers halves its time. Sixteen entries of one
-//! vector lie together, so that both kernels below multiply whole registers without moving their lanes.
+//! A register has sixteen numbers: two rows of one block, or a row of two blocks, in both cases number beside number.
+//! What it is multiplied with comes from a basis in the same order: two numbers of a vector, each to all rows or blocks
+//! alike, or one number. So no lanes are moved but where rows enter and leave, and products are not spread over
+//! more sums than there are.
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
@@ -9,30 +11,44 @@ use std::ops::Range;
 
 use super::{
     block::{self, Square},
-    lanes::{Kernel, Lanes, Row, WIDTH},
-    pair::after,
+    lanes::{Kernel, Lanes, Row, Twin, WIDTH},
     product::{GROUP, Product},
 };
 
 /// Rows in a panel.
 pub(super) const ROWS: usize = GROUP;
 
-/// Sixteen rows of a block, vector by vector.
+/// Sixteen rows of a block, two by two.
 #[derive(Debug, Clone, Copy, Default)]
-#[repr(C, align(64))]
-pub(super) struct Panel(pub [[f32; ROWS]; WIDTH]);
+pub(super) struct Panel(pub Beside<1>);
+
+const TWOS: usize = ROWS / 2;
+
+/// As many rows of so many blocks: two rows are as many registers.
+pub(super) type Beside<const BLOCKS: usize> = [[Twin; BLOCKS]; TWOS];
+
+/// Nothing, in all of a tile.
+const fn nothing<const BLOCKS: usize>() -> [Beside<BLOCKS>; TILE] {
+    [[[Twin([[0.0; 2]; WIDTH]); BLOCKS]; TWOS]; TILE]
+}
 
 /// Panels that a block of so many rows takes; the rows that it lacks are zero.
 pub(super) const fn panels(rows: usize) -> usize {
     rows.div_ceil(ROWS)
 }
 
-/// Reads sixteen rows into a panel's registers.
+/// Sixteen rows at most, two by two.
 #[inline(always)]
-pub(super) fn read<L: Lanes>(lanes: L, rows: &[Row]) -> [L::Wide; WIDTH] {
-    match rows.as_array::<ROWS>() {
-        Some(rows) => lanes.columns(rows),
-        None => lanes.columns(&std::array::from_fn(|at| rows.get(at).copied().unwrap_or_default())),
+fn set<L: Lanes>(lanes: L, to: &mut Beside<1>, rows: &[Row]) {
+    let (twos, rest) = rows.as_chunks::<2>();
+    for (to, [first, second]) in to.as_flattened_mut().iter_mut().zip(twos) {
+        *to = lanes.twin(lanes.beside([lanes.load(first), lanes.load(second)]));
+    }
+    if rows.len() < ROWS {
+        to[twos.len()..].fill([Twin::default()]);
+        if let [last] = rest {
+            to[twos.len()] = [lanes.twin(lanes.beside([lanes.load(last), lanes.zero()]))];
+        }
     }
 }
 
@@ -64,76 +80,103 @@ impl Kernel for Normalise<'_> {
             }
             for (to, rows) in [(first.get_mut(at), x), (second.get_mut(at), y)] {
                 if let Some(to) = to {
-                    to.0 = read(lanes, rows).map(|column| lanes.wide_row(column));
+                    set(lanes, &mut to.0, rows);
                 }
             }
         }
     }
 }
 
-/// Panels of both factors that stay in a near cache.
-const TILE: usize = 32;
+/// Panels of a block that are taken at a time: a page of memory, as much as the hardware fetches ahead.
+const TILE: usize = 8;
 
-/// Products `Vᵢᵀ R` of every block of a basis with `R = B w`, or `B w − U M` if such a pair is given.
-///
-/// Products are summed in single precision over the rows of a tile, and in double precision over the tiles. They are
-/// added to what is there, 64 rows for each block, of which [`totals`] makes squares.
-pub(super) struct PanelDots<'a, 'b> {
-    pub basis: &'a [&'b [Panel]],
+/// Rows by which the work of the kernels below can be parted.
+pub(super) const STRETCH: usize = TILE * ROWS;
+
+/// Panels whose products are added up one by one, before their sum is added to others.
+const RUN: usize = 4;
+
+/// The products of a block of a basis with the sixteen numbers of a register, number beside number: for two blocks
+/// their products, for two rows of one block what comes of either of them.
+pub(super) type Sums = [[Row; 2]; WIDTH];
+
+/// Both of these together.
+pub(super) fn total(sums: &Sums) -> Square {
+    sums.map(|[one, other]| std::array::from_fn(|at| one[at] + other[at]))
+}
+
+/// A product R = B w, or B w − U M if such a pair is given.
+#[derive(Clone, Copy)]
+pub(super) struct Right<'a> {
     pub mass: &'a Product,
     pub w: &'a [Row],
     /// U and M.
     pub less: Option<(&'a [Row], &'a Square)>,
-    /// Of one [`STRETCH`] or several.
-    pub rows: Range<usize>,
-    pub room: &'a mut [Row],
 }
 
-/// Rows by which the kernels below can be divided.
-pub(super) const STRETCH: usize = TILE * ROWS;
+/// Products `Vᵢᵀ R` of every block of a basis, and `Vᵢᵀ v` if a block v is given, too.
+///
+/// They are summed in single precision over the rows of a tile, and in double precision over the tiles, and are added
+/// to what is there: R in the first place for R alone, else v in the first and R in the second.
+pub(super) struct PanelDots<'a, 'b> {
+    pub basis: &'a [&'b [Panel]],
+    pub v: Option<&'a [Row]>,
+    pub right: Right<'a>,
+    /// Of one [`STRETCH`] or several.
+    pub rows: Range<usize>,
+    /// For each block.
+    pub sums: &'a mut [Sums],
+}
 
 impl Kernel for PanelDots<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
-        let Self { basis, mass, w, less, rows, room } = self;
+        let Self { basis, v, right: Right { mass, w, less }, rows, sums } = self;
         let less = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
-        let len = rows.end;
-        let mut tile = [Panel::default(); TILE];
+        let (mut tile, mut pairs) = (nothing::<1>(), nothing::<2>());
         let mut group = [[0.0; WIDTH]; ROWS];
-        for at in rows.start / STRETCH..len.div_ceil(STRETCH) {
-            let rows = at * STRETCH..len.min((at + 1) * STRETCH);
-            let used = panels(rows.len());
-            for (panel, first) in tile[..used].iter_mut().zip(rows.step_by(ROWS)) {
-                let group = &mut group[..ROWS.min(len - first)];
-                mass.group(lanes, w, first / ROWS, group);
+        let last = panels(rows.end);
+        for first in (rows.start / ROWS..last).step_by(TILE) {
+            let range = first..last.min(first + TILE);
+            for ((panel, tile), pairs) in range.clone().zip(&mut tile).zip(&mut pairs) {
+                let rows = panel * ROWS..rows.end.min((panel + 1) * ROWS);
+                let group = &mut group[..rows.len()];
+                mass.group(lanes, w, panel, group);
                 if let Some((u, factor)) = &less {
-                    for (to, u) in group.iter_mut().zip(&u[first..]) {
+                    for (to, u) in group.iter_mut().zip(&u[rows.clone()]) {
                         *to = lanes.row(block::less(lanes, lanes.load(to), u, factor));
                     }
                 }
-                panel.0 = read(lanes, group).map(|column| lanes.wide_row(column));
+                if let Some(v) = v {
+                    if group.len() < ROWS {
+                        *pairs = Default::default();
+                    }
+                    for ((to, right), v) in pairs.as_flattened_mut().iter_mut().zip(group).zip(&v[rows]) {
+                        *to = lanes.twin(lanes.beside([lanes.load(v), lanes.load(right)]));
+                    }
+                } else {
+                    set(lanes, tile, group);
+                }
             }
-            let range = at * TILE..at * TILE + used;
-            for ((number, block), total) in basis.iter().enumerate().zip(room.chunks_mut(WIDTH * WIDTH)) {
-                let next = after(basis, number, &range, Some(range.end));
-                with_tile(lanes, &block[range.clone()], next, &tile[..used], total);
+            if v.is_some() {
+                all_dots(lanes, basis, &range, &pairs, sums);
+            } else {
+                all_dots(lanes, basis, &range, &tile, sums);
             }
         }
     }
 }
 
-/// `w −= past M`; returns `newestᵀ w`, and sets the i-th square to `Vᵢᵀ w` for every block of a basis.
+/// `w −= past M`; returns `newestᵀ w`, and adds to the i-th sums `Vᵢᵀ w` for every block of a basis.
 pub(super) struct Recur<'a, 'b> {
     pub past: &'a [Row],
     pub factor: &'a Square,
     pub newest: &'a [Row],
     pub w: &'a mut [Row],
     pub basis: &'a [&'b [Panel]],
-    /// 64 rows for each block.
-    pub room: &'a mut Vec<Row>,
-    pub sums: &'a mut Vec<Square>,
+    pub sums: &'a mut [Sums],
 }
 
 impl Kernel for Recur<'_, '_> {
@@ -141,16 +184,13 @@ impl Kernel for Recur<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) -> Square {
-        let Self { past, factor, newest, w, basis, room, sums } = self;
+        let Self { past, factor, newest, w, basis, sums } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
         let mut gram = [lanes.zero(); WIDTH];
-        room.clear();
-        room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
-        let mut tile = [Panel::default(); TILE];
-        for (at, w) in w.chunks_mut(TILE * ROWS).enumerate() {
-            let first = at * TILE * ROWS;
-            let used = panels(w.len());
-            for ((panel, w), first) in tile.iter_mut().zip(w.chunks_mut(ROWS)).zip((first..).step_by(ROWS)) {
+        let mut tile = nothing::<1>();
+        for (at, w) in w.chunks_mut(STRETCH).enumerate() {
+            let range = at * TILE..at * TILE + panels(w.len());
+            for ((tile, w), first) in tile.iter_mut().zip(w.chunks_mut(ROWS)).zip((at * STRETCH..).step_by(ROWS)) {
                 let rows = first..first + w.len();
                 for ((w, past), newest) in w.iter_mut().zip(&past[rows.clone()]).zip(&newest[rows]) {
                     let sum = block::less(lanes, lanes.load(w), past, &factor);
@@ -160,82 +200,90 @@ impl Kernel for Recur<'_, '_> {
                     }
                 }
                 if !basis.is_empty() {
-                    panel.0 = read(lanes, w).map(|column| lanes.wide_row(column));
+                    set(lanes, tile, w);
                 }
             }
-            let range = at * TILE..at * TILE + used;
-            for ((number, block), total) in basis.iter().enumerate().zip(room.chunks_mut(WIDTH * WIDTH)) {
-                let next = after(basis, number, &range, Some(range.end));
-                with_tile(lanes, &block[range.clone()], next, &tile[..used], total);
-            }
+            all_dots(lanes, basis, &range, &tile, sums);
         }
-        totals(room, sums);
         gram.map(|sum| lanes.row(sum))
     }
 }
 
-/// Adds the products of the vectors of a block with those of a tile, and has fetched what comes next.
+/// What comes after some panels of a block: the same ones of the next block, and after the last block those of the
+/// first one from `then` on. None of them may be there.
 #[inline(always)]
-fn with_tile<L: Lanes>(lanes: L, block: &[Panel], next: &[Panel], tile: &[Panel], total: &mut [Row]) {
-    if L::MANY {
-        for (part, j) in (0..WIDTH).step_by(2).enumerate() {
-            let quarter = TILE / 4;
-            let next = next.get(part * quarter..(part + 1) * quarter).unwrap_or_default();
-            dots::<L, WIDTH, 2>(lanes, block, next, tile, (0, j), total);
-        }
-    } else {
-        for i in (0..WIDTH).step_by(2) {
-            for j in (0..WIDTH).step_by(2) {
-                dots::<L, 2, 2>(lanes, block, &[], tile, (i, j), total);
-            }
+fn after<'a>(basis: &[&'a [Panel]], number: usize, range: &Range<usize>, then: Option<usize>) -> &'a [Panel] {
+    match (basis.get(number + 1), then) {
+        (Some(next), _) => &next[range.clone()],
+        (None, Some(then)) => basis[0].get(then..then + range.len()).unwrap_or_default(),
+        (None, None) => &[],
+    }
+}
+
+/// What is multiplied with a register: two numbers of a vector if it has two rows, or one of them if it has two blocks.
+#[inline(always)]
+fn splat<L: Lanes, const BLOCKS: usize>(lanes: L, two: &Twin, vector: usize, row: usize) -> L::Wide {
+    let two = two.0[vector];
+    if BLOCKS == 1 { lanes.wide_splat_two(two) } else { lanes.wide_splat(two[row]) }
+}
+
+/// Adds the products of these panels of every block of a basis with a tile.
+#[inline(always)]
+fn all_dots<L: Lanes, const BLOCKS: usize>(
+    lanes: L,
+    basis: &[&[Panel]],
+    range: &Range<usize>,
+    tile: &[Beside<BLOCKS>; TILE],
+    sums: &mut [Sums],
+) {
+    for ((number, block), sums) in basis.iter().enumerate().zip(sums) {
+        let (block, next) = (&block[range.clone()], after(basis, number, range, Some(range.end)));
+        if L::MANY {
+            dots::<L, BLOCKS, WIDTH>(lanes, block, next, tile, 0, sums);
+        } else {
+            dots::<L, BLOCKS, { WIDTH / 2 }>(lanes, block, next, tile, 0, sums);
+            dots::<L, BLOCKS, { WIDTH / 2 }>(lanes, block, &[], tile, WIDTH / 2, sums);
         }
     }
 }
 
-/// The products that eight partial sums each say.
-pub(super) fn totals(room: &[Row], sums: &mut Vec<Square>) {
-    sums.clear();
-    sums.extend(room.chunks(WIDTH * WIDTH).map(|total| -> Square {
-        std::array::from_fn(|i| std::array::from_fn(|j| total[i * WIDTH + j].iter().sum()))
-    }));
-}
-
-/// Adds the products of `M` vectors of a block with `N` of the tile, as eight partial sums each.
+/// Adds the products of `N` vectors of a block, from `i` on, with a tile.
 #[inline(always)]
-fn dots<L: Lanes, const M: usize, const N: usize>(
+fn dots<L: Lanes, const BLOCKS: usize, const N: usize>(
     lanes: L,
     block: &[Panel],
     next: &[Panel],
-    tile: &[Panel],
-    (i, j): (usize, usize),
-    total: &mut [Row],
+    tile: &[Beside<BLOCKS>; TILE],
+    i: usize,
+    sums: &mut Sums,
 ) {
-    let mut sum = [[lanes.wide_splat(0.0); N]; M];
-    for (at, (x, y)) in block.iter().zip(tile).enumerate() {
-        // A quarter of a panel for each panel.
-        if let Some(next) = next.get(at / 4) {
-            lanes.fetch_near(&next.0[at % 4 * 2]);
-            lanes.fetch_near(&next.0[at % 4 * 2 + 1]);
+    let mut sum = [lanes.wide_splat(0.0); N];
+    for (run, (block, tile)) in block.chunks(RUN).zip(tile.chunks(RUN)).enumerate() {
+        let mut parts = [[lanes.wide_splat(0.0); N]; BLOCKS];
+        for (at, (panel, rows)) in block.iter().zip(tile).enumerate() {
+            let next = next.get(run * RUN + at).unwrap_or(panel);
+            for ((two, next), rows) in panel.0.iter().zip(&next.0).zip(rows) {
+                lanes.fetch(&next[0]);
+                for ((at, row), part) in rows.iter().enumerate().zip(&mut parts) {
+                    let row = lanes.wide(row);
+                    for (vector, part) in part.iter_mut().enumerate() {
+                        *part = lanes.wide_add_mul(*part, splat::<L, BLOCKS>(lanes, &two[0], i + vector, at), row);
+                    }
+                }
+            }
         }
-        let y: [L::Wide; N] = std::array::from_fn(|at| lanes.wide(&y.0[j + at]));
-        for (at, sum) in sum.iter_mut().enumerate() {
-            let x = lanes.wide(&x.0[i + at]);
-            for (sum, &y) in sum.iter_mut().zip(&y) {
-                *sum = lanes.wide_add_mul(*sum, x, y);
+        for part in parts {
+            for (sum, part) in sum.iter_mut().zip(part) {
+                *sum = lanes.wide_add(*sum, part);
             }
         }
     }
-    for (at, sum) in sum.iter().enumerate() {
-        let total = &mut total[(i + at) * WIDTH + j..][..N];
-        for (total, &sum) in total.iter_mut().zip(sum) {
-            let [low, high] = lanes.widen(sum);
-            *total = lanes.row(lanes.add(lanes.load(total), lanes.add(low, high)));
+    for (sums, sum) in sums[i..i + N].iter_mut().zip(sum) {
+        for (to, sum) in sums.iter_mut().zip(lanes.apart(sum)) {
+            *to = lanes.row(lanes.add(lanes.load(to), sum));
         }
     }
 }
-
-/// Panels that are read from one block after the other: as much as the hardware fetches ahead.
-const PAGE: usize = 8;
 
 /// `w −= Σ Vᵢ Cᵢ` over the blocks of a basis, for C so small that single precision is enough for the sum, and
 /// `w −= U M` if such a pair is given.
@@ -243,16 +291,14 @@ const PAGE: usize = 8;
 /// It goes from the end to the beginning, for the end of the basis is what the cache has of it after [`PanelDots`].
 pub(super) struct PanelUpdate<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
-    pub factors: &'a [Single],
+    /// The rows of each C, from [`factor`].
+    pub factors: &'a [[Twin; WIDTH]],
     pub w: &'a mut [Row],
     /// U and M.
     pub less: Option<(&'a [Row], &'a Square)>,
     /// Of one [`STRETCH`] or several.
     pub rows: Range<usize>,
 }
-
-/// Eight by eight numbers in single precision, by rows.
-pub(super) type Single = [[f32; WIDTH]; WIDTH];
 
 impl Kernel for PanelUpdate<'_, '_> {
     type Output = ();
@@ -261,103 +307,136 @@ impl Kernel for PanelUpdate<'_, '_> {
     fn run<L: Lanes>(self, lanes: L) {
         let Self { basis, factors, w, less, rows } = self;
         let less = less.map(|(u, factor)| (u, factor.each_ref().map(|row| lanes.load(row))));
-        let mut sums = [Panel::default(); PAGE];
-        let start = rows.start / ROWS;
-        for (at, w) in w[rows].chunks_mut(PAGE * ROWS).enumerate().rev() {
-            let first = start + at * PAGE;
-            let range = first..first + panels(w.len());
+        let mut sums = nothing::<1>();
+        let last = panels(rows.end);
+        for first in (rows.start / ROWS..last).step_by(TILE).rev() {
+            let range = first..last.min(first + TILE);
             let sums = &mut sums[..range.len()];
-            sums.fill(Panel::default());
-            // Two blocks at a time, so that sums are loaded and stored half as often.
-            for number in (0..basis.len()).step_by(2) {
-                let next = |number| after(basis, number, &range, first.checked_sub(PAGE));
-                let one = &basis[number][range.clone()];
-                if let Some(other) = basis.get(number + 1) {
-                    let factors = [&factors[number], &factors[number + 1]];
-                    let blocks = [one, &other[range.clone()]];
-                    subtotal(lanes, blocks, [next(number + 1), next(number + 2)], factors, sums);
-                } else {
-                    subtotal(lanes, [one], [next(number)], [&factors[number]], sums);
+            all_updates(lanes, basis, factors, &range, sums);
+            for (panel, sums) in range.zip(sums) {
+                let rows = panel * ROWS..rows.end.min((panel + 1) * ROWS);
+                let mut group = [[0.0; WIDTH]; ROWS];
+                for (to, [sum]) in group.as_chunks_mut().0.iter_mut().zip(sums) {
+                    *to = lanes.apart(lanes.wide(sum)).map(|row| lanes.row(row));
                 }
-            }
-            for ((group, w), sums) in range.zip(w.chunks_mut(ROWS)).zip(sums.iter()) {
-                let changes = lanes.rows(std::array::from_fn(|column| lanes.wide(&sums.0[column])));
-                for (w, change) in w.iter_mut().zip(changes) {
-                    *w = lanes.row(lanes.sub(lanes.load(w), change));
-                }
-                if let Some((u, factor)) = &less {
-                    for (w, u) in w.iter_mut().zip(&u[group * ROWS..]) {
-                        *w = lanes.row(block::less(lanes, lanes.load(w), u, factor));
+                for ((w, sum), row) in w[rows.clone()].iter_mut().zip(&group).zip(rows) {
+                    let mut left = lanes.sub(lanes.load(w), lanes.load(sum));
+                    if let Some((u, factor)) = &less {
+                        left = block::less(lanes, left, &u[row], factor);
                     }
+                    *w = lanes.row(left);
                 }
             }
         }
     }
 }
 
-/// Adds the products of the panels of some blocks with their factors to as many panels, and has fetched what comes
-/// next.
-#[inline(always)]
-fn subtotal<L: Lanes, const B: usize>(
-    lanes: L,
-    blocks: [&[Panel]; B],
-    next: [&[Panel]; B],
-    factors: [&Single; B],
-    sums: &mut [Panel],
-) {
-    let mut at = 0;
-    if L::MANY {
-        while at + 2 <= sums.len() {
-            for next in &next {
-                for next in next.iter().skip(at).take(2) {
-                    for column in &next.0 {
-                        lanes.fetch(column);
-                    }
+/// `v −= Σ Vᵢ Cᵢ` and `w −= Σ Vᵢ Dᵢ + v M` with v as it was before, over the blocks of a basis, for C and D so small
+/// that single precision is enough for the sums. A copy of v in single precision is made anew. In the same order as
+/// [`PanelUpdate`].
+pub(super) struct PairUpdate<'a, 'b> {
+    pub basis: &'a [&'b [Panel]],
+    /// The rows of each C and D, from [`factor`].
+    pub factors: &'a [[Twin; WIDTH]],
+    pub v: &'a mut [Row],
+    pub copy: &'a mut [Panel],
+    pub w: &'a mut [Row],
+    /// M.
+    pub along: &'a Square,
+    /// Of one [`STRETCH`] or several.
+    pub rows: Range<usize>,
+}
+
+impl Kernel for PairUpdate<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) {
+        let Self { basis, factors, v, copy, w, along, rows } = self;
+        let along = along.each_ref().map(|row| lanes.load(row));
+        let mut sums = nothing::<2>();
+        let last = panels(rows.end);
+        for first in (rows.start / ROWS..last).step_by(TILE).rev() {
+            let range = first..last.min(first + TILE);
+            let sums = &mut sums[..range.len()];
+            all_updates(lanes, basis, factors, &range, sums);
+            for (panel, sums) in range.zip(sums) {
+                let rows = panel * ROWS..rows.end.min((panel + 1) * ROWS);
+                let (v, w) = (&mut v[rows.clone()], &mut w[rows]);
+                for ((v, w), sum) in v.iter_mut().zip(w).zip(sums.as_flattened()) {
+                    let [off, sum] = lanes.apart(lanes.wide(sum));
+                    *w = lanes.row(block::less(lanes, lanes.sub(lanes.load(w), sum), v, &along));
+                    *v = lanes.row(lanes.sub(lanes.load(v), off));
                 }
+                set(lanes, &mut copy[panel].0, v);
             }
-            update::<L, B, 2, WIDTH>(lanes, blocks, factors, sums, (at, 0));
-            at += 2;
-        }
-        if at < sums.len() {
-            update::<L, B, 1, WIDTH>(lanes, blocks, factors, sums, (at, 0));
-        }
-    } else {
-        while at < sums.len() {
-            for j in (0..WIDTH).step_by(2) {
-                update::<L, B, 1, 2>(lanes, blocks, factors, sums, (at, j));
-            }
-            at += 1;
         }
     }
 }
 
-/// Adds the products of `P` panels of some blocks, from `at` on, with the `N` columns of their factors from `j` on.
+/// What the updates multiply with: the rows of two matrices beside each other, or of one beside itself.
+pub(super) fn factor(first: &Square, second: &Square) -> [Twin; WIDTH] {
+    std::array::from_fn(|i| Twin(std::array::from_fn(|j| [first[i][j] as f32, second[i][j] as f32])))
+}
+
+/// Sets sums to the products of these panels of all blocks with their factors.
 #[inline(always)]
-fn update<L: Lanes, const B: usize, const P: usize, const N: usize>(
+fn all_updates<L: Lanes, const BLOCKS: usize>(
     lanes: L,
-    blocks: [&[Panel]; B],
-    factors: [&Single; B],
-    to: &mut [Panel],
-    (at, j): (usize, usize),
+    basis: &[&[Panel]],
+    factors: &[[Twin; WIDTH]],
+    range: &Range<usize>,
+    sums: &mut [Beside<BLOCKS>],
 ) {
-    let Some(to) = to[at..].first_chunk_mut::<P>() else { return };
-    let mut sum: [[L::Wide; N]; P] =
-        std::array::from_fn(|panel| std::array::from_fn(|at| lanes.wide(&to[panel].0[j + at])));
-    for (block, factor) in blocks.iter().zip(factors) {
-        let Some(block) = block[at..].first_chunk::<P>() else { return };
-        for (k, factor) in factor.iter().enumerate() {
-            let x: [L::Wide; P] = std::array::from_fn(|at| lanes.wide(&block[at].0[k]));
-            for (at, &factor) in factor[j..j + N].iter().enumerate() {
-                let factor = lanes.wide_splat(factor);
-                for (sum, &x) in sum.iter_mut().zip(&x) {
-                    sum[at] = lanes.wide_add_mul(sum[at], x, factor);
-                }
-            }
-        }
-    }
-    for (to, sum) in to.iter_mut().zip(sum) {
-        for (to, sum) in to.0[j..j + N].iter_mut().zip(sum) {
-            *to = lanes.wide_row(sum);
+    sums.fill([[Twin::default(); BLOCKS]; TWOS]);
+    for ((number, block), factors) in basis.iter().enumerate().zip(factors) {
+        let (block, next) = (&block[range.clone()], after(basis, number, range, range.start.checked_sub(TILE)));
+        if L::MANY {
+            update::<L, BLOCKS, WIDTH, TWOS>(lanes, block, next, factors, sums, 0);
+        } else {
+            update::<L, BLOCKS, { WIDTH / 2 }, 1>(lanes, block, next, factors, sums, 0);
+            update::<L, BLOCKS, { WIDTH / 2 }, 1>(lanes, block, &[], factors, sums, WIDTH / 2);
         }
     }
 }
+
+/// Adds the products of `N` vectors of a block, from `k` on, with their factors, `T` times two rows at a time.
+#[inline(always)]
+fn update<L: Lanes, const BLOCKS: usize, const N: usize, const T: usize>(
+    lanes: L,
+    block: &[Panel],
+    next: &[Panel],
+    factors: &[Twin; WIDTH],
+    sums: &mut [Beside<BLOCKS>],
+    k: usize,
+) {
+    let mut factor = [lanes.wide_splat(0.0); N];
+    for (to, factor) in factor.iter_mut().zip(&factors[k..]) {
+        *to = lanes.wide(factor);
+    }
+    for (at, (panel, sums)) in block.iter().zip(sums).enumerate() {
+        let next = next.get(at).unwrap_or(panel);
+        for twin in next.0.as_flattened() {
+            lanes.fetch(twin);
+        }
+        for (twos, sums) in panel.0.as_flattened().as_chunks::<T>().0.iter().zip(sums.as_chunks_mut::<T>().0) {
+            let mut sum = [[lanes.wide_splat(0.0); BLOCKS]; T];
+            for (to, sum) in sum.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
+                *to = lanes.wide(sum);
+            }
+            for (vector, &factor) in factor.iter().enumerate() {
+                for (two, sum) in twos.iter().zip(&mut sum) {
+                    for (row, sum) in sum.iter_mut().enumerate() {
+                        *sum = lanes.wide_add_mul(*sum, splat::<L, BLOCKS>(lanes, two, k + vector, row), factor);
+                    }
+                }
+            }
+            for (to, &sum) in sums.as_flattened_mut().iter_mut().zip(sum.as_flattened()) {
+                *to = lanes.twin(sum);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -24,8 +24,7 @@ use super::{Basis, Krylov, Scratch, product};
 use crate::spectrum::{
     block::{Dots, Square, Update},
     lanes::{Buffer, Row, WIDTH, dispatch},
-    pair::{PairDots, PairUpdate, Squares},
-    panel::{Panel, PanelDots, PanelUpdate, STRETCH, totals},
+    panel::{PairUpdate, Panel, PanelDots, PanelUpdate, Right, STRETCH, Sums, factor, total},
     poll::{Poll, Stop},
     product::{Multiply, Product},
     timings::Cost,
@@ -152,11 +151,12 @@ impl Krylov<'_> {
             Basis::Single { .. } if self.due() => Some(self.pair(along, poll)?),
             Basis::Single { .. } => {
                 let count = older.min(FIRST);
-                let Scratch { blocks, images, now, work, room, .. } = &mut *self.scratch;
+                let Scratch { blocks, images, now, work, .. } = &mut *self.scratch;
                 let mut sums = seen;
                 let less = Some((now.rows(), along));
                 if sums.is_empty() {
-                    sums = products(&panels(&images[..count]), &Product::Unit, work.rows(), less, room, poll)?;
+                    let right = Right { mass: &Product::Unit, w: work.rows(), less };
+                    sums = products(&panels(&images[..count]), None, right, poll)?.iter().map(total).collect();
                 }
                 take_out(&panels(&blocks[..count]), &sums, work.rows_mut(), less, poll)?;
                 self.losses.round(&sums);
@@ -176,18 +176,12 @@ impl Krylov<'_> {
         let Scratch { blocks, now, work, image, .. } = &mut *self.scratch;
         let (basis, rest) = blocks.split_at_mut(older);
         let basis = panels(basis);
-        let mut sums: Vec<Squares> = vec![Squares::default(); older];
-        for rows in stretches(work.rows().len(), older) {
-            poll.spend(rows.len() * older * WIDTH)?;
-            let (mass, v, w, sums) = (&self.pencil.mass, image.rows(), work.rows(), &mut sums);
-            dispatch(PairDots { basis: &basis, v, mass, w, along, rows, sums });
-        }
-        // It is orthogonal to the block before it to more digits than are seen here.
-        for [c, _] in &mut sums[older - 1] {
-            *c = Row::default();
-        }
+        let right = Right { mass: &self.pencil.mass, w: work.rows(), less: Some((image.rows(), along)) };
+        let sums = products(&basis, Some(image.rows()), right, poll)?;
         let side = |side: usize| -> Vec<Square> { sums.iter().map(|sums| sums.map(|rows| rows[side])).collect() };
-        let (c, d) = (side(0), side(1));
+        let (mut c, d) = (side(0), side(1));
+        // It is orthogonal to the block before it to more digits than are seen here.
+        c[older - 1] = Square::default();
         let along: Square = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let both = c.iter().zip(&d).flat_map(|(c, d)| c.iter().zip(d));
@@ -197,8 +191,7 @@ impl Krylov<'_> {
         if let Some(alpha) = self.alpha.last_mut() {
             *alpha = symmetric(&along);
         }
-        let row = |[c, d]: [Row; 2]| std::array::from_fn(|at| if at < WIDTH { c[at] } else { d[at - WIDTH] } as f32);
-        let factors: Vec<_> = sums.iter().map(|sums| sums.map(row)).collect();
+        let factors: Vec<_> = c.iter().zip(&d).map(|(c, d)| factor(c, d)).collect();
         let (w, v, copy) = (work.rows_mut(), now.rows_mut(), &mut rest[0]);
         poll.meter.timings.pairs += 2 * older;
         poll.meter.timings.passed += older;
@@ -227,13 +220,14 @@ impl Krylov<'_> {
     /// precision ([`next_to`](Self::next_to) does that), and to the locked vectors. Returns its components along the
     /// blocks.
     pub(super) fn clean(&mut self, blocks: usize, poll: &mut Poll) -> Result<Vec<Square>, Stop> {
-        let Scratch { blocks: basis, exact, work, image, room, .. } = &mut *self.scratch;
+        let Scratch { blocks: basis, exact, work, image, .. } = &mut *self.scratch;
         let len = work.rows().len();
         let mut sums = Vec::new();
         match self.basis {
             Basis::Single { .. } => {
                 let basis = panels(&basis[..blocks.saturating_sub(1)]);
-                sums = products(&basis, &self.pencil.mass, work.rows(), None, room, poll)?;
+                let right = Right { mass: &self.pencil.mass, w: work.rows(), less: None };
+                sums = products(&basis, None, right, poll)?.iter().map(total).collect();
                 take_out(&basis, &sums, work.rows_mut(), None, poll)?;
             }
             Basis::Double(locked) => {
@@ -325,22 +319,12 @@ impl Krylov<'_> {
 }
 
 /// [`PanelDots`] over all rows.
-fn products(
-    basis: &[&[Panel]],
-    mass: &Product,
-    w: &[Row],
-    less: Option<(&[Row], &Square)>,
-    room: &mut Vec<Row>,
-    poll: &mut Poll,
-) -> Result<Vec<Square>, Stop> {
-    room.clear();
-    room.resize(basis.len() * WIDTH * WIDTH, [0.0; WIDTH]);
-    for rows in stretches(w.len(), basis.len()) {
+fn products(basis: &[&[Panel]], v: Option<&[Row]>, right: Right, poll: &mut Poll) -> Result<Vec<Sums>, Stop> {
+    let mut sums = vec![Sums::default(); basis.len()];
+    for rows in stretches(right.w.len(), basis.len()) {
         poll.spend(rows.len() * basis.len() * WIDTH)?;
-        dispatch(PanelDots { basis, mass, w, less, rows, room });
+        dispatch(PanelDots { basis, v, right, rows, sums: &mut sums });
     }
-    let mut sums = Vec::new();
-    totals(room, &mut sums);
     Ok(sums)
 }
 
@@ -354,7 +338,7 @@ fn take_out(
 ) -> Result<(), Stop> {
     poll.meter.timings.pairs += basis.len();
     poll.meter.timings.passed += basis.len();
-    let factors: Vec<_> = factors.iter().map(|square| square.map(|row| row.map(|value| value as f32))).collect();
+    let factors: Vec<_> = factors.iter().map(|square| factor(square, square)).collect();
     for rows in stretches(w.len(), basis.len()).rev() {
         poll.spend(rows.len() * basis.len() * WIDTH)?;
         dispatch(PanelUpdate { basis, factors: &factors, w, less, rows });
