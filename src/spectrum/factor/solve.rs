@@ -166,13 +166,25 @@ impl<L: Lanes> Columns for ForwardPiece<'_, L> {
         for (row, solved) in own.iter_mut().zip(solved) {
             *row = lanes.row(solved);
         }
-        for (&row, entries) in rows.iter().zip(values.as_chunks::<W>().0) {
+        let mut one = |row: u32, entries: &[f64; W]| {
             let row = &mut x[row as usize];
             let mut sum = lanes.load(row);
             for (&entry, &solved) in entries.iter().zip(&solved) {
                 sum = lanes.sub_mul(sum, lanes.splat(entry), solved);
             }
             *row = lanes.row(sum);
+        };
+        let values = values.as_chunks::<W>().0;
+        let (fours, rest) = rows.as_chunks::<4>();
+        let (values, values_rest) = values[..rows.len()].split_at(fours.len() * 4);
+        for (rows, entries) in fours.iter().zip(values.as_chunks::<4>().0) {
+            one(rows[0], &entries[0]);
+            one(rows[1], &entries[1]);
+            one(rows[2], &entries[2]);
+            one(rows[3], &entries[3]);
+        }
+        for (&row, entries) in rest.iter().zip(values_rest) {
+            one(row, entries);
         }
     }
 }
@@ -196,10 +208,30 @@ impl<L: Lanes> Columns for BackwardPiece<'_, L> {
         for (sum, (row, &inverse)) in sum.iter_mut().zip(own.iter().zip(&inverse[..W])) {
             *sum = lanes.mul(lanes.load(row), lanes.splat(inverse));
         }
-        for (&row, entries) in rows.iter().zip(values.as_chunks::<W>().0) {
+        // From the last row on, for the first ones are what was solved last. By turns to two sums, for additions to one
+        // wait for each other.
+        let mut other = [lanes.zero(); W];
+        let mut add = |sum: &mut [L::Reg; W], row: u32, entries: &[f64; W]| {
             let row = lanes.load(&x[row as usize]);
             for (sum, &entry) in sum.iter_mut().zip(entries) {
                 *sum = lanes.sub_mul(*sum, lanes.splat(entry), row);
+            }
+        };
+        let values = &values.as_chunks::<W>().0[..rows.len()];
+        let (rest, fours) = rows.as_rchunks::<4>();
+        let (values_rest, values) = values.as_rchunks::<4>();
+        for (rows, entries) in fours.iter().zip(values).rev() {
+            add(&mut sum, rows[3], &entries[3]);
+            add(if W < 5 { &mut other } else { &mut sum }, rows[2], &entries[2]);
+            add(&mut sum, rows[1], &entries[1]);
+            add(if W < 5 { &mut other } else { &mut sum }, rows[0], &entries[0]);
+        }
+        for (&row, entries) in rest.iter().zip(values_rest).rev() {
+            add(&mut sum, row, entries);
+        }
+        if W < 5 {
+            for (sum, other) in sum.iter_mut().zip(other) {
+                *sum = lanes.add(*sum, other);
             }
         }
         for row in (1..W).rev() {
