@@ -33,5 +33,5 @@ pub(crate) fn count_u32s<S: Simd>(simd: S, mask: S::m32s) -> usize {
         return cast::<_, u16>(mask).count_ones() as usize;
     }
     let ones = [simd.select_u32s(mask, simd.splat_u32s(1), simd.splat_u32s(0))];
-    pulp::bytemuck::cast_slice::<_, u32>(&ones).iter().sum::<u32>() as usize
+    bytemuck::cast_slice::<_, u32>(&ones).iter().sum::<u32>() as usize
 }

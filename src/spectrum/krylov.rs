@@ -14,7 +14,7 @@ use super::{
     block::{Combine, Dots, Residual, Square, Update},
     factor::Factor,
     lanes::{Buffer, Row, WIDTH, dispatch},
-    panel::{Normalise, Panel, Recur, Sums, panels, total},
+    panel::{Blocks, Normalise, Panel, Recur, Sums, total},
     pencil::Pencil,
     poll::{Poll, Stop},
     product::Multiply,
@@ -35,6 +35,9 @@ const WARMING: usize = 3;
 const STRICTLY: f64 = 1e-2;
 const ROUGHLY: f64 = 1e-9;
 
+/// The most blocks of a basis in single precision.
+pub(super) const LONGEST: usize = 49;
+
 /// Decompositions of a block after which it is taken as it is.
 const ROUNDS: usize = 7;
 
@@ -42,8 +45,8 @@ const ROUNDS: usize = 7;
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
     /// The basis in single precision, and B times its first blocks.
-    blocks: Vec<Vec<Panel>>,
-    images: Vec<Vec<Panel>>,
+    blocks: Blocks,
+    images: Blocks,
     /// The basis in double precision.
     exact: Vec<Buffer>,
     /// The newest block V of the basis and the one before it, in double precision.
@@ -131,6 +134,10 @@ impl<'a> Krylov<'a> {
         for buffer in [now, past, work, image] {
             buffer.reserve(len);
             poll.spend(8 * len)?;
+        }
+        if matches!(basis, Basis::Single { .. }) {
+            scratch.blocks.reserve(pencil.order(), LONGEST);
+            scratch.images.reserve(pencil.order(), FIRST);
         }
         let mut random = Random(seed);
         for values in scratch.work.flat().chunks_mut(1 << 18) {
@@ -238,8 +245,8 @@ impl<'a> Krylov<'a> {
         if let Some(beta) = self.beta.last() {
             let factor: Square = std::array::from_fn(|i| std::array::from_fn(|j| beta[j][i]));
             let (past, newest, w) = (past.rows(), image.rows(), work.rows_mut());
-            let images: Vec<&[Panel]> = images.iter().take(seen.len()).map(Vec::as_slice).collect();
-            along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &images, sums: &mut seen });
+            let basis = images.first(seen.len());
+            along[0] = dispatch(Recur { past, factor: &factor, newest, w, basis: &basis, sums: &mut seen });
         } else {
             dispatch(Dots { basis: &[image.rows()], t: work.rows(), sums: &mut along });
         }
@@ -261,20 +268,11 @@ impl<'a> Krylov<'a> {
     fn normalise(&mut self, at: usize, poll: &mut Poll) -> Result<Square, Stop> {
         let (total, inverse) = self.decompose(at, STRICTLY, poll)?;
         let Scratch { blocks, images, past, work, image, .. } = &mut *self.scratch;
-        let count = panels(work.rows().len());
-        let room = |list: &mut Vec<Vec<Panel>>| {
-            if list.len() == at {
-                list.push(Vec::new());
-            }
-            list[at].resize(count, Panel::default());
-        };
         let mut single: [&mut [Panel]; 2] = [&mut [], &mut []];
         if matches!(self.basis, Basis::Single { .. }) {
-            room(blocks);
-            single[0] = &mut blocks[at];
+            single[0] = blocks.block_mut(at);
             if at < FIRST {
-                room(images);
-                single[1] = &mut images[at];
+                single[1] = images.block_mut(at);
             }
         }
         let (x, y, copy) = (work.rows_mut(), image.rows_mut(), past.rows_mut());

@@ -14,6 +14,8 @@
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, _MM_HINT_T0, _mm_prefetch};
 
+use bytemuck::{Pod, Zeroable};
+
 pub(super) use self::buffer::Buffer;
 
 mod buffer;
@@ -25,7 +27,7 @@ pub(super) const WIDTH: usize = 8;
 pub(super) type Row = [f64; WIDTH];
 
 /// Two rows in single precision, number beside number.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Twin(pub [[f32; 2]; WIDTH]);
 

@@ -9,9 +9,11 @@
 
 use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
+
 use super::{
     block::{self, Square},
-    lanes::{Kernel, Lanes, Row, Twin, WIDTH},
+    lanes::{Buffer, Kernel, Lanes, Row, Twin, WIDTH},
     product::{GROUP, Product},
 };
 
@@ -19,7 +21,8 @@ use super::{
 pub(super) const ROWS: usize = GROUP;
 
 /// Sixteen rows of a block, two by two.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(transparent)]
 pub(super) struct Panel(pub Beside<1>);
 
 const TWOS: usize = ROWS / 2;
@@ -33,8 +36,42 @@ const fn nothing<const BLOCKS: usize>() -> [Beside<BLOCKS>; TILE] {
 }
 
 /// Panels that a block of so many rows takes; the rows that it lacks are zero.
-pub(super) const fn panels(rows: usize) -> usize {
+const fn panels(rows: usize) -> usize {
     rows.div_ceil(ROWS)
+}
+
+/// Blocks in single precision, one behind the other.
+#[derive(Debug, Default)]
+pub(super) struct Blocks {
+    memory: Buffer,
+    /// Panels in a block.
+    panels: usize,
+}
+
+impl Blocks {
+    /// Addresses for so many blocks of so many rows.
+    pub(super) fn reserve(&mut self, rows: usize, blocks: usize) {
+        self.panels = panels(rows);
+        self.memory.reserve(blocks * self.panels * size_of::<Panel>() / size_of::<f64>());
+    }
+
+    /// The first blocks.
+    pub(super) fn first(&self, blocks: usize) -> Vec<&[Panel]> {
+        let all: &[Panel] = bytemuck::cast_slice(self.memory.numbers());
+        all.chunks_exact(self.panels.max(1)).take(blocks).collect()
+    }
+
+    /// One block.
+    pub(super) fn block_mut(&mut self, at: usize) -> &mut [Panel] {
+        self.split(at).1
+    }
+
+    /// The first blocks, and the one behind them.
+    pub(super) fn split(&mut self, at: usize) -> (Vec<&[Panel]>, &mut [Panel]) {
+        let all: &mut [Panel] = bytemuck::cast_slice_mut(self.memory.flat());
+        let (first, rest) = all.split_at_mut(at * self.panels);
+        (first.chunks_exact(self.panels.max(1)).collect(), &mut rest[..self.panels])
+    }
 }
 
 /// Sixteen rows at most, two by two.
@@ -70,7 +107,7 @@ impl Kernel for Normalise<'_> {
         let Self { x, y, factor, copy, single: [first, second] } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
         let groups = x.chunks_mut(ROWS).zip(y.chunks_mut(ROWS)).zip(copy.chunks_mut(ROWS));
-        for (at, ((x, y), copy)) in groups.enumerate() {
+        for (at, ((x, y), copy)) in groups.enumerate().rev() {
             for x in x.iter_mut() {
                 *x = lanes.row(block::combine(lanes, x, &factor));
             }

@@ -11,7 +11,7 @@ pub(super) use self::shift::{End, Ending, Shift};
 use super::{
     band::Band,
     factor::Factor,
-    krylov::{Basis, Krylov, Scratch},
+    krylov::{Basis, Krylov, LONGEST, Scratch},
     lanes::WIDTH,
     pencil::Pencil,
     poll::{Poll, Stop},
@@ -23,8 +23,8 @@ mod shift;
 
 /// Eigenvalues that a slice may have before it is made narrower, as a multiple of what it aims at.
 const MOST: f64 = 1.4;
-/// Blocks of a basis after which a process gives up.
-const BLOCKS: usize = 48;
+/// Blocks of a basis after which a process gives up. One more is made of the last one.
+const BLOCKS: usize = LONGEST - 1;
 /// Blocks after which a process looks at its Ritz values for the first time, as many as most processes need between
 /// slices of [`USUAL`] eigenvalues, and for how many more eigenvalues it waits for one more; and in the lowest process,
 /// which needs fewer, for nothing is beyond its left side.

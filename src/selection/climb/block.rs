@@ -229,7 +229,7 @@ fn none<S: Simd>(simd: S, mask: S::m64s) -> bool {
 
 #[inline(always)]
 fn lanes<S: Simd>(vectors: &[S::u64s]) -> &[u64] {
-    pulp::bytemuck::cast_slice(vectors)
+    bytemuck::cast_slice(vectors)
 }
 
 /// The exchanges of Batcher's odd-even merge sort for `count` entries: `(a, b)` with a < b, the lesser goes to a.

@@ -112,7 +112,7 @@ impl<S: Simd> Sketch<S> {
             let rank = simd.add_u32s(before, simd.splat_u32s(nth));
             gained = simd.add_u32s(gained, look_up(simd, credits, rank, filled));
         }
-        let gained: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(&gained));
+        let gained: &[u32] = bytemuck::cast_slice(std::slice::from_ref(&gained));
         for (loss, &gained) in losses.iter_mut().zip(gained) {
             // Credits are rounded up, so all of them may be more than the whole.
             *loss += u64::from(whole.saturating_sub(gained));
@@ -183,7 +183,7 @@ fn look_up<S: Simd>(simd: S, table: &[u32; RANKS], at: S::u32s, filled: usize) -
         let found = v4.avx512f._mm512_permutex2var_epi32(cast(low[0]), cast(at), cast(high[0]));
         return cast(found);
     }
-    let places: &[u32] = pulp::bytemuck::cast_slice(std::slice::from_ref(&at));
+    let places: &[u32] = bytemuck::cast_slice(std::slice::from_ref(&at));
     let mut found = [0; LANES];
     for (found, &place) in found.iter_mut().zip(places) {
         *found = table[place as usize % RANKS];
@@ -213,7 +213,7 @@ mod tests {
             let places: Vec<u32> = (0..RANKS as u32).map(|at| at * 91 % RANKS as u32).collect();
             let found = |places: &[u32]| {
                 let found = look_up(simd, table, simd.partial_load_u32s(places), filled);
-                pulp::bytemuck::cast_slice::<_, u32>(&[found]).to_vec()
+                bytemuck::cast_slice::<_, u32>(&[found]).to_vec()
             };
             let found = places.chunks(LANES.min(S::U32_LANES)).flat_map(found);
             found.zip(&places).filter(|&(found, &place)| found != table[place as usize]).count()

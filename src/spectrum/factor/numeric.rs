@@ -17,14 +17,11 @@ use crate::{
 /// The largest entry that M may have: errors of the counts and solves grow with it.
 const GROWTH: f64 = 1e5;
 
-/// Numbers that are written for the first time between two looks at the watch.
-const PAGES: usize = 1 << 19;
-
 /// L − σB = M D Mᵀ with a unit lower triangular M, and room to do it again for another shift.
 #[derive(Debug, Default)]
 pub(in crate::spectrum) struct Factor {
     /// M, packed for the solves: see [`pack`].
-    pub(super) values: Vec<f64>,
+    pub(super) values: Buffer,
     /// 1 / D.
     pub(super) inverse: Vec<f64>,
     /// The columns of each supernode in the order in which they became pivots, counted from its first one.
@@ -35,7 +32,8 @@ pub(in crate::spectrum) struct Factor {
     pub(super) growth: f64,
     front: Buffer,
     scaled: Buffer,
-    stack: Vec<f64>,
+    /// Update matrices that wait for their parents.
+    stack: Buffer,
 }
 
 impl Factor {
@@ -52,22 +50,15 @@ impl Factor {
         poll: &mut Poll,
     ) -> Result<usize, Stop> {
         let size = symbolic.front.next_multiple_of(WIDTH);
-        // New memory page by page.
-        while self.values.len() < symbolic.values() {
-            let next = (self.values.len() + PAGES).min(symbolic.values());
-            self.values.reserve_exact(symbolic.values() - self.values.len());
-            self.values.resize(next, 0.0);
-            poll.spend(2 * PAGES)?;
-        }
-        self.values.truncate(symbolic.values());
+        self.values.reserve(symbolic.values());
         self.inverse.resize(matrix.order(), 0.0);
         self.order.resize(matrix.order(), 0);
         self.moved.resize(symbolic.len(), false);
         self.growth = 1.0;
         self.front.reserve(size * size);
         self.scaled.reserve(size * size);
-        self.stack.clear();
         self.stack.reserve(symbolic.stack);
+        let mut height = 0;
         let mut negative = 0;
         for at in 0..symbolic.len() {
             let (begin, width, rows) = symbolic.node(at);
@@ -78,7 +69,7 @@ impl Factor {
             dispatch(Clear { values: front, size });
             entries(symbolic, matrix, sigma, begin..begin + width, size, front);
             for child in children(symbolic, at) {
-                self.absorb(symbolic, child, size);
+                height = self.absorb(symbolic, child, size, height);
             }
             let pivots = &mut self.inverse[begin..begin + width];
             let order = &mut self.order[begin..begin + width];
@@ -94,10 +85,12 @@ impl Factor {
                 *pivot = 1.0 / *pivot;
             }
             let front = &self.front.flat()[..size * size];
-            let values = &mut self.values[symbolic.value_start[at]..symbolic.value_start[at + 1]];
+            let values = &mut self.values.flat()[symbolic.value_start[at]..symbolic.value_start[at + 1]];
             pack(front, size, width, rows.len(), values);
             self.growth = largest(values).max(self.growth);
-            self.stack.extend_from_slice(&front[width * size..used * size]);
+            let update = &front[width * size..used * size];
+            self.stack.flat()[height..height + update.len()].copy_from_slice(update);
+            height += update.len();
         }
         poll.charge(Cost::Factorisation);
         Ok(negative)
@@ -108,14 +101,15 @@ impl Factor {
         self.growth < GROWTH
     }
 
-    /// Adds the update matrix of the last child on the stack to the front.
-    fn absorb(&mut self, symbolic: &Symbolic, child: usize, size: usize) {
+    /// Adds the update matrix of the last child on the stack, which is so high, to the front. Returns how high it is
+    /// without that.
+    fn absorb(&mut self, symbolic: &Symbolic, child: usize, size: usize, height: usize) -> usize {
         let relative = &symbolic.relative[symbolic.row_start[child]..symbolic.row_start[child + 1]];
         let (_, width, _) = symbolic.node(child);
         let from = (width + relative.len()).next_multiple_of(WIDTH);
-        let start = self.stack.len() - relative.len() * from;
-        let front = self.front.flat();
-        for (at, (&column, values)) in relative.iter().zip(self.stack[start..].chunks_exact(from)).enumerate() {
+        let start = height - relative.len() * from;
+        let (front, updates) = (self.front.flat(), &self.stack.numbers()[start..height]);
+        for (at, (&column, values)) in relative.iter().zip(updates.chunks_exact(from)).enumerate() {
             let values = &values[width + at..];
             let target = &mut front[column as usize * size..(column as usize + 1) * size];
             let rows = &relative[at..];
@@ -131,7 +125,7 @@ impl Factor {
                 target[row as usize] += value;
             }
         }
-        self.stack.truncate(start);
+        start
     }
 }
 

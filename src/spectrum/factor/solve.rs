@@ -67,6 +67,7 @@ impl Kernel for Forward<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { factor, symbolic, x, pieces } = self;
+        let all = factor.values.numbers();
         let mut room: Vec<Row> = Vec::new();
         for piece in pieces {
             if let Some((range, order)) = factor.moved(symbolic, piece) {
@@ -78,7 +79,7 @@ impl Kernel for Forward<'_> {
                 }
             }
             let rows = &symbolic.piece_rows[piece.rows as usize..piece.end as usize];
-            let values = &factor.values[piece.values..];
+            let values = &all[piece.values..];
             by_size(piece.width, ForwardPiece { lanes, x, begin: piece.begin as usize, rows, values });
         }
     }
@@ -97,10 +98,11 @@ impl Kernel for Backward<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, lanes: L) {
         let Self { factor, symbolic, x, pieces } = self;
+        let all = factor.values.numbers();
         let mut room: Vec<Row> = Vec::new();
         for piece in pieces.iter().rev() {
             let rows = &symbolic.piece_rows[piece.rows as usize..piece.end as usize];
-            let values = &factor.values[piece.values..];
+            let values = &all[piece.values..];
             let (begin, inverse) = (piece.begin as usize, &factor.inverse[piece.begin as usize..]);
             by_size(piece.width, BackwardPiece { lanes, x, begin, rows, values, inverse });
             if let Some((range, order)) = factor.moved(symbolic, piece) {
@@ -211,7 +213,7 @@ impl<L: Lanes> Columns for BackwardPiece<'_, L> {
         // From the last row on, for the first ones are what was solved last. By turns to two sums, for additions to one
         // wait for each other.
         let mut other = [lanes.zero(); W];
-        let mut add = |sum: &mut [L::Reg; W], row: u32, entries: &[f64; W]| {
+        let add = |sum: &mut [L::Reg; W], row: u32, entries: &[f64; W]| {
             let row = lanes.load(&x[row as usize]);
             for (sum, &entry) in sum.iter_mut().zip(entries) {
                 *sum = lanes.sub_mul(*sum, lanes.splat(entry), row);

@@ -156,9 +156,9 @@ impl Krylov<'_> {
                 let less = Some((now.rows(), along));
                 if sums.is_empty() {
                     let right = Right { mass: &Product::Unit, w: work.rows(), less };
-                    sums = products(&panels(&images[..count]), None, right, poll)?.iter().map(total).collect();
+                    sums = products(&images.first(count), None, right, poll)?.iter().map(total).collect();
                 }
-                take_out(&panels(&blocks[..count]), &sums, work.rows_mut(), less, poll)?;
+                take_out(&blocks.first(count), &sums, work.rows_mut(), less, poll)?;
                 self.losses.round(&sums);
                 (count == older).then(|| largest(&sums))
             }
@@ -174,8 +174,7 @@ impl Krylov<'_> {
     fn pair(&mut self, along: &Square, poll: &mut Poll) -> Result<f64, Stop> {
         let older = self.blocks() - 1;
         let Scratch { blocks, now, work, image, .. } = &mut *self.scratch;
-        let (basis, rest) = blocks.split_at_mut(older);
-        let basis = panels(basis);
+        let (basis, copy) = blocks.split(older);
         let right = Right { mass: &self.pencil.mass, w: work.rows(), less: Some((image.rows(), along)) };
         let sums = products(&basis, Some(image.rows()), right, poll)?;
         let side = |side: usize| -> Vec<Square> { sums.iter().map(|sums| sums.map(|rows| rows[side])).collect() };
@@ -192,7 +191,7 @@ impl Krylov<'_> {
             *alpha = symmetric(&along);
         }
         let factors: Vec<_> = c.iter().zip(&d).map(|(c, d)| factor(c, d)).collect();
-        let (w, v, copy) = (work.rows_mut(), now.rows_mut(), &mut rest[0]);
+        let (w, v) = (work.rows_mut(), now.rows_mut());
         poll.meter.timings.pairs += 2 * older;
         poll.meter.timings.passed += older;
         for rows in stretches(w.len(), older).rev() {
@@ -225,7 +224,7 @@ impl Krylov<'_> {
         let mut sums = Vec::new();
         match self.basis {
             Basis::Single { .. } => {
-                let basis = panels(&basis[..blocks.saturating_sub(1)]);
+                let basis = basis.first(blocks.saturating_sub(1));
                 let right = Right { mass: &self.pencil.mass, w: work.rows(), less: None };
                 sums = products(&basis, None, right, poll)?.iter().map(total).collect();
                 take_out(&basis, &sums, work.rows_mut(), None, poll)?;
@@ -350,10 +349,6 @@ fn take_out(
 fn stretches(len: usize, blocks: usize) -> impl DoubleEndedIterator<Item = Range<usize>> {
     let step = ((1 << 22) / (blocks.max(1) * WIDTH * STRETCH)).max(1) * STRETCH;
     (0..len.div_ceil(step)).map(move |at| at * step..len.min((at + 1) * step))
-}
-
-fn panels(blocks: &[Vec<Panel>]) -> Vec<&[Panel]> {
-    blocks.iter().map(Vec::as_slice).collect()
 }
 
 /// The symmetric part.

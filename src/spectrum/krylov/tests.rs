@@ -21,7 +21,7 @@ fn rows(krylov: &Krylov, block: usize) -> Vec<Row> {
     match krylov.basis {
         Basis::Double(_) => krylov.scratch.exact[block].rows().to_vec(),
         Basis::Single { .. } => {
-            let panels = &krylov.scratch.blocks[block];
+            let panels = krylov.scratch.blocks.first(block + 1)[block];
             let rows = 0..krylov.pencil.order();
             rows.map(|at| panels[at / ROWS].0[at % ROWS / 2][0].0.map(|pair| f64::from(pair[at % 2]))).collect()
         }
