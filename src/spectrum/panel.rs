@@ -57,8 +57,12 @@ impl Blocks {
 
     /// The first blocks.
     pub(super) fn first(&self, blocks: usize) -> Vec<&[Panel]> {
+        // There may be no memory yet.
+        if blocks == 0 {
+            return Vec::new();
+        }
         let all: &[Panel] = bytemuck::cast_slice(self.memory.numbers());
-        all.chunks_exact(self.panels.max(1)).take(blocks).collect()
+        all.chunks_exact(self.panels).take(blocks).collect()
     }
 
     /// One block.
@@ -70,7 +74,7 @@ impl Blocks {
     pub(super) fn split(&mut self, at: usize) -> (Vec<&[Panel]>, &mut [Panel]) {
         let all: &mut [Panel] = bytemuck::cast_slice_mut(self.memory.flat());
         let (first, rest) = all.split_at_mut(at * self.panels);
-        (first.chunks_exact(self.panels.max(1)).collect(), &mut rest[..self.panels])
+        (first.chunks_exact(self.panels).collect(), &mut rest[..self.panels])
     }
 }
 
@@ -131,7 +135,7 @@ const TILE: usize = 8;
 pub(super) const STRETCH: usize = TILE * ROWS;
 
 /// Panels whose products are added up one by one, before their sum is added to others.
-const RUN: usize = 4;
+const RUN: usize = 2;
 
 /// The products of a block of a basis with the sixteen numbers of a register, number beside number: for two blocks
 /// their products, for two rows of one block what comes of either of them.

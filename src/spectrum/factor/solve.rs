@@ -168,27 +168,33 @@ impl<L: Lanes> Columns for ForwardPiece<'_, L> {
         for (row, solved) in own.iter_mut().zip(solved) {
             *row = lanes.row(solved);
         }
-        let mut one = |row: u32, entries: &[f64; W]| {
-            let row = &mut x[row as usize];
-            let mut sum = lanes.load(row);
-            for (&entry, &solved) in entries.iter().zip(&solved) {
-                sum = lanes.sub_mul(sum, lanes.splat(entry), solved);
+        let (fours, rest) = rows.as_chunks::<UNROLLED>();
+        let (values, values_rest) = values.as_chunks::<W>().0[..rows.len()].as_chunks::<UNROLLED>();
+        for (rows, entries) in fours.iter().zip(values) {
+            for (&row, entries) in rows.iter().zip(entries) {
+                less(lanes, &mut x[row as usize], entries, &solved);
             }
-            *row = lanes.row(sum);
-        };
-        let values = values.as_chunks::<W>().0;
-        let (fours, rest) = rows.as_chunks::<4>();
-        let (values, values_rest) = values[..rows.len()].split_at(fours.len() * 4);
-        for (rows, entries) in fours.iter().zip(values.as_chunks::<4>().0) {
-            one(rows[0], &entries[0]);
-            one(rows[1], &entries[1]);
-            one(rows[2], &entries[2]);
-            one(rows[3], &entries[3]);
         }
         for (&row, entries) in rest.iter().zip(values_rest) {
-            one(row, entries);
+            less(lanes, &mut x[row as usize], entries, &solved);
         }
     }
+}
+
+/// Rows that are taken without a jump between them: there are often just more than so many.
+const UNROLLED: usize = 4;
+
+/// Columns of a piece from which on there is no waiting for additions to one of the sums.
+const FEW: usize = 5;
+
+/// What is left of a row when the columns of a piece are solved.
+#[inline(always)]
+fn less<L: Lanes, const W: usize>(lanes: L, row: &mut Row, entries: &[f64; W], solved: &[L::Reg; W]) {
+    let mut left = lanes.load(row);
+    for (&entry, &solved) in entries.iter().zip(solved) {
+        left = lanes.sub_mul(left, lanes.splat(entry), solved);
+    }
+    *row = lanes.row(left);
 }
 
 struct BackwardPiece<'a, L> {
@@ -210,28 +216,21 @@ impl<L: Lanes> Columns for BackwardPiece<'_, L> {
         for (sum, (row, &inverse)) in sum.iter_mut().zip(own.iter().zip(&inverse[..W])) {
             *sum = lanes.mul(lanes.load(row), lanes.splat(inverse));
         }
-        // From the last row on, for the first ones are what was solved last. By turns to two sums, for additions to one
-        // wait for each other.
+        // From the last row on, for the first ones are what was solved last. Where there are few sums, rows are added
+        // to two sets of them by turns, for additions to one wait for each other.
         let mut other = [lanes.zero(); W];
-        let add = |sum: &mut [L::Reg; W], row: u32, entries: &[f64; W]| {
-            let row = lanes.load(&x[row as usize]);
-            for (sum, &entry) in sum.iter_mut().zip(entries) {
-                *sum = lanes.sub_mul(*sum, lanes.splat(entry), row);
-            }
-        };
-        let values = &values.as_chunks::<W>().0[..rows.len()];
-        let (rest, fours) = rows.as_rchunks::<4>();
-        let (values_rest, values) = values.as_rchunks::<4>();
+        let (rest, fours) = rows.as_rchunks::<UNROLLED>();
+        let (values_rest, values) = values.as_chunks::<W>().0[..rows.len()].as_rchunks::<UNROLLED>();
         for (rows, entries) in fours.iter().zip(values).rev() {
-            add(&mut sum, rows[3], &entries[3]);
-            add(if W < 5 { &mut other } else { &mut sum }, rows[2], &entries[2]);
-            add(&mut sum, rows[1], &entries[1]);
-            add(if W < 5 { &mut other } else { &mut sum }, rows[0], &entries[0]);
+            for (at, (&row, entries)) in rows.iter().zip(entries).enumerate().rev() {
+                let sum = if W < FEW && at % 2 == 0 { &mut other } else { &mut sum };
+                left(lanes, sum, entries, &x[row as usize]);
+            }
         }
         for (&row, entries) in rest.iter().zip(values_rest).rev() {
-            add(&mut sum, row, entries);
+            left(lanes, &mut sum, entries, &x[row as usize]);
         }
-        if W < 5 {
+        if W < FEW {
             for (sum, other) in sum.iter_mut().zip(other) {
                 *sum = lanes.add(*sum, other);
             }
@@ -245,5 +244,14 @@ impl<L: Lanes> Columns for BackwardPiece<'_, L> {
         for (row, sum) in x[begin..begin + W].iter_mut().zip(sum) {
             *row = lanes.row(sum);
         }
+    }
+}
+
+/// What is left of the columns of a piece when a row is solved.
+#[inline(always)]
+fn left<L: Lanes, const W: usize>(lanes: L, sum: &mut [L::Reg; W], entries: &[f64; W], row: &Row) {
+    let row = lanes.load(row);
+    for (sum, &entry) in sum.iter_mut().zip(entries) {
+        *sum = lanes.sub_mul(*sum, lanes.splat(entry), row);
     }
 }
