@@ -111,7 +111,7 @@ impl Kernel for Normalise<'_> {
         let Self { x, y, factor, copy, single: [first, second] } = self;
         let factor: [L::Reg; WIDTH] = std::array::from_fn(|at| lanes.load(&factor[at]));
         let groups = x.chunks_mut(ROWS).zip(y.chunks_mut(ROWS)).zip(copy.chunks_mut(ROWS));
-        for (at, ((x, y), copy)) in groups.enumerate().rev() {
+        for (at, ((x, y), copy)) in groups.enumerate() {
             for x in x.iter_mut() {
                 *x = lanes.row(block::combine(lanes, x, &factor));
             }
@@ -356,16 +356,14 @@ impl Kernel for PanelUpdate<'_, '_> {
             all_updates(lanes, basis, factors, &range, sums);
             for (panel, sums) in range.zip(sums) {
                 let rows = panel * ROWS..rows.end.min((panel + 1) * ROWS);
-                let mut group = [[0.0; WIDTH]; ROWS];
-                for (to, [sum]) in group.as_chunks_mut().0.iter_mut().zip(sums) {
-                    *to = lanes.apart(lanes.wide(sum)).map(|row| lanes.row(row));
-                }
-                for ((w, sum), row) in w[rows.clone()].iter_mut().zip(&group).zip(rows) {
-                    let mut left = lanes.sub(lanes.load(w), lanes.load(sum));
-                    if let Some((u, factor)) = &less {
-                        left = block::less(lanes, left, &u[row], factor);
+                for ((w, [sum]), row) in w[rows.clone()].chunks_mut(2).zip(sums).zip(rows.step_by(2)) {
+                    for ((w, sum), row) in w.iter_mut().zip(lanes.apart(lanes.wide(sum))).zip(row..) {
+                        let mut left = lanes.sub(lanes.load(w), sum);
+                        if let Some((u, factor)) = &less {
+                            left = block::less(lanes, left, &u[row], factor);
+                        }
+                        *w = lanes.row(left);
                     }
-                    *w = lanes.row(left);
                 }
             }
         }
