@@ -4,7 +4,11 @@
 //! It exists beside faer's because a certified and cancellable eigensolver asks for what a library does not give: the
 //! signs of D as they come, a look at the watch between any two supernodes, and solves on rows of eight values.
 
-pub(super) use self::{numeric::Factor, order::order, symbolic::Symbolic};
+pub(super) use self::{
+    numeric::Factor,
+    order::{Order, order},
+    symbolic::Symbolic,
+};
 
 mod front;
 mod numeric;

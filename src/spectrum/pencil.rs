@@ -1,7 +1,7 @@
 //! L and B of one connected piece, ready for the solver.
 
 use super::{
-    factor::{Symbolic, order},
+    factor::{Order, Symbolic, order},
     product::{ByRows, Product},
 };
 use crate::{
@@ -26,7 +26,7 @@ impl Pencil {
     /// When the watch cancels.
     pub(super) fn watched(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Self>, Stopped> {
         match order(matrix, pulse)? {
-            Some(order) => Ok(Some(Self::ordered(matrix.select(&order, pulse)?, pulse)?)),
+            Some(order) => Ok(Some(Self::ordered(matrix, &order, pulse)?)),
             None => Ok(None),
         }
     }
@@ -37,12 +37,13 @@ impl Pencil {
         Self::watched(matrix, &Pulse::new(&crate::watch::Unwatched)).ok()?
     }
 
-    /// Analyses matrices that are in the order of elimination.
+    /// Analyses the matrices in an order of elimination.
     ///
     /// # Errors
     /// When the watch cancels.
-    pub(super) fn ordered(matrix: Symmetric, pulse: &Pulse) -> Result<Self, Stopped> {
-        let symbolic = Symbolic::new(&matrix, pulse)?;
+    pub(super) fn ordered(matrix: &Symmetric, order: &Order, pulse: &Pulse) -> Result<Self, Stopped> {
+        let matrix = matrix.select(&order.rows, pulse)?;
+        let symbolic = Symbolic::new(&matrix, order, pulse)?;
         pulse.beat(30 * matrix.rows.len())?;
         let mass = match &matrix.mass {
             MassMatrix::Unit => Product::Unit,

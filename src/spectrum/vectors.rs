@@ -194,8 +194,8 @@ fn of_part(
     let pulse = &Pulse::new(poll.watch());
     let matrix = laplacian.matrix.select(rows, pulse)?;
     let order = super::factor::order(&matrix, pulse)?.ok_or(Missing::Lost(0.0))?;
-    let rows: Vec<u32> = order.iter().map(|&at| rows[at as usize]).collect();
-    let pencil = Pencil::ordered(matrix.select(&order, pulse)?, pulse)?;
+    let rows: Vec<u32> = order.rows.iter().map(|&at| rows[at as usize]).collect();
+    let pencil = Pencil::ordered(&matrix, &order, pulse)?;
     poll.charge(Cost::Ordering);
     let mut made = Vec::new();
     for band in spectrum.bands.iter().filter(|band| band.part == part) {

@@ -23,7 +23,18 @@ pub(super) const ROOT: u32 = u32::MAX;
 /// interrupted, and knows nothing of parts.
 const SHORT: usize = 55_000;
 
-/// A fill-reducing order of the rows, as the list of old indices: approximate minimum degree, [our own](degree) where
+/// An order of elimination, and what it comes to.
+#[derive(Debug)]
+pub(in crate::spectrum) struct Order {
+    /// The old indices of the rows.
+    pub rows: Vec<u32>,
+    /// The parent of every column in the elimination tree.
+    pub(super) tree: Vec<u32>,
+    /// The number of entries of every column of the factor, diagonal included.
+    pub(super) counts: Vec<u32>,
+}
+
+/// A fill-reducing order of the rows: approximate minimum degree, [our own](degree) where
 /// there are many rows and in the stages of a [dissection](dissect) where there are very many, then a postorder of the
 /// elimination tree in which a column's heaviest child comes last.
 ///
@@ -31,13 +42,13 @@ const SHORT: usize = 55_000;
 ///
 /// # Errors
 /// When the watch cancels.
-pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Vec<u32>>, Stopped> {
+pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Option<Order>, Stopped> {
     let n = matrix.order();
     let (offsets, neighbours) = matrix.graph(pulse)?;
     pulse.ask()?;
     let found =
         if n <= SHORT { minimum_degree(&offsets, &neighbours) } else { dissect::order(&offsets, &neighbours, pulse)? };
-    let Some(mut forward) = found else { return Ok(None) };
+    let Some(forward) = found else { return Ok(None) };
     pulse.ask()?;
     let mut inverse = vec![0_u32; n];
     for (new, &old) in forward.iter().enumerate() {
@@ -56,8 +67,14 @@ pub(in crate::spectrum) fn order(matrix: &Symmetric, pulse: &Pulse) -> Result<Op
     let tree = elimination_tree(n, &earlier, pulse)?;
     let counts = column_counts(n, &tree, &earlier, pulse)?;
     let post = postorder(&tree, &counts, pulse)?;
-    forward = post.iter().map(|&at| forward[at as usize]).collect();
-    Ok(Some(forward))
+    // The tree and the counts of what is in postorder are the same with other names.
+    for (new, &old) in post.iter().enumerate() {
+        inverse[old as usize] = new as u32;
+    }
+    let named = |&at: &u32| inverse.get(tree[at as usize] as usize).copied().unwrap_or(ROOT);
+    let (tree, counts) = (post.iter().map(named).collect(), post.iter().map(|&at| counts[at as usize]).collect());
+    let rows = post.iter().map(|&at| forward[at as usize]).collect();
+    Ok(Some(Order { rows, tree, counts }))
 }
 
 fn minimum_degree(offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
@@ -73,7 +90,7 @@ fn minimum_degree(offsets: &[usize], neighbours: &[u32]) -> Option<Vec<u32>> {
 }
 
 /// Calls back with the rows of a column above its diagonal.
-pub(super) trait Earlier: Fn(usize, &mut dyn FnMut(usize)) {}
+trait Earlier: Fn(usize, &mut dyn FnMut(usize)) {}
 
 impl<F: Fn(usize, &mut dyn FnMut(usize))> Earlier for F {}
 
@@ -81,7 +98,7 @@ impl<F: Fn(usize, &mut dyn FnMut(usize))> Earlier for F {}
 ///
 /// # Errors
 /// When the watch cancels.
-pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier, pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
+fn elimination_tree(n: usize, earlier: &impl Earlier, pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     let mut parent = vec![ROOT; n];
     let mut ancestor = vec![ROOT; n];
     for column in 0..n {
@@ -109,12 +126,7 @@ pub(super) fn elimination_tree(n: usize, earlier: &impl Earlier, pulse: &Pulse) 
 ///
 /// # Errors
 /// When the watch cancels.
-pub(super) fn column_counts(
-    n: usize,
-    parent: &[u32],
-    earlier: &impl Earlier,
-    pulse: &Pulse,
-) -> Result<Vec<u32>, Stopped> {
+fn column_counts(n: usize, parent: &[u32], earlier: &impl Earlier, pulse: &Pulse) -> Result<Vec<u32>, Stopped> {
     let mut counts = vec![1_u32; n];
     let mut seen = vec![ROOT; n];
     for column in 0..n {

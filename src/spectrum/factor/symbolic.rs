@@ -2,15 +2,14 @@
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
-use super::order::{ROOT, column_counts, elimination_tree};
+use super::order::{Order, ROOT};
 use crate::{
     laplacian::Symmetric,
     spectrum::lanes::WIDTH,
     watch::{Pulse, Stopped},
 };
 
-/// Supernodes, their rows and how their fronts are put together. The matrix must be in the order that
-/// [`order`](super::order::order) gave.
+/// Supernodes, their rows and how their fronts are put together, of a matrix in its [order of elimination](Order).
 #[derive(Debug)]
 pub(in crate::spectrum) struct Symbolic {
     /// First column of every supernode, and n.
@@ -61,19 +60,8 @@ impl Symbolic {
     ///
     /// # Errors
     /// When the watch cancels.
-    pub(in crate::spectrum) fn new(matrix: &Symmetric, pulse: &Pulse) -> Result<Self, Stopped> {
-        let n = matrix.order();
-        let (offsets, neighbours) = matrix.graph(pulse)?;
-        let earlier = |column: usize, visit: &mut dyn FnMut(usize)| {
-            for &neighbour in &neighbours[offsets[column]..offsets[column + 1]] {
-                if (neighbour as usize) < column {
-                    visit(neighbour as usize);
-                }
-            }
-        };
-        let tree = elimination_tree(n, &earlier, pulse)?;
-        let counts = column_counts(n, &tree, &earlier, pulse)?;
-        let begin = supernodes(&tree, &counts, pulse)?;
+    pub(in crate::spectrum) fn new(matrix: &Symmetric, order: &Order, pulse: &Pulse) -> Result<Self, Stopped> {
+        let begin = supernodes(&order.tree, &order.counts, pulse)?;
         let (row_start, rows, parent) = structure(matrix, &begin, pulse)?;
         Self::finish(matrix, begin, row_start, rows, &parent, pulse)
     }
