@@ -66,7 +66,7 @@ mod vectors;
 mod window;
 
 /// The version of everything that decides the values: raised whenever any eigenvalue could change in any bit.
-pub const KERNEL: u32 = 11;
+pub const KERNEL: u32 = 12;
 
 /// Why there is no spectrum.
 #[derive(Debug, Error)]

@@ -2,6 +2,7 @@
 
 use std::{
     collections::HashSet,
+    panic::{AssertUnwindSafe, catch_unwind},
     path::{Path, PathBuf},
     sync::{
         Mutex, PoisonError,
@@ -106,7 +107,7 @@ fn solve(
             let solved = if watch.cancelled() {
                 Err(SingleError::Cancelled)
             } else {
-                one(singles, mesh, arguments, problem, &Silent(&watch))
+                or_failed(|| one(singles, mesh, arguments, problem, &Silent(&watch)))
             };
             found.lock().unwrap_or_else(PoisonError::into_inner).push((at, solved));
             watch.progress(all.done.fetch_add(1, Ordering::Relaxed) + 1, all.total);
@@ -123,6 +124,12 @@ fn solve(
     let mut found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
     found.sort_by_key(|(at, _)| *at);
     found.into_iter().map(|(_, solved)| solved).collect()
+}
+
+/// A panic fails one mesh; the threads that work on others, and those that wait to help them, go on.
+fn or_failed<T>(work: impl FnOnce() -> Result<T, SingleError>) -> Result<T, SingleError> {
+    let internal = |_| Err(SingleError::Failed("internal error in the solver, please report it".to_owned()));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(internal)
 }
 
 /// What is reported of a mesh.
@@ -230,5 +237,17 @@ fn format_of(out: &Path) -> Option<SpectrumFormat> {
         "json" => Some(SpectrumFormat::Json),
         "ev" => Some(SpectrumFormat::Ev),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_fails_one_mesh() {
+        assert!(matches!(or_failed(|| Ok(1)), Ok(1)));
+        let failed = or_failed::<()>(|| panic!("as a defect of the solver would"));
+        assert!(matches!(failed, Err(SingleError::Failed(reason)) if reason.contains("please report it")));
     }
 }

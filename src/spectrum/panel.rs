@@ -1,9 +1,9 @@
 //! Blocks of eight vectors in single precision, for orthogonalisation of one or two blocks against many.
 //!
-//! A register has sixteen numbers: two rows of one block, or a row of two blocks, in both cases number beside number.
-//! What it is multiplied with comes from a basis in the same order: two numbers of a vector, each to all rows or blocks
-//! alike, or one number. So no lanes are moved but where rows enter and leave, and products are not spread over
-//! more sums than there are.
+//! A register has sixteen numbers, a [`Twin`]: two rows of one block, or one row of two blocks, number beside number. A
+//! basis is kept as twins of two rows. Two rows of a block are multiplied with the same two rows of a vector of the
+//! basis, by turns; a row of two blocks with one number. So lanes are moved only where rows enter and leave, and a
+//! product needs no more sums than it has numbers, or twice as many.
 
 #![expect(clippy::inline_always, reason = "a kernel is compiled for an instruction set only where it is inlined")]
 
@@ -13,9 +13,13 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{
     block::{self, Square},
-    lanes::{Buffer, Kernel, Lanes, Row, Twin, WIDTH},
+    lanes::{Kernel, Lanes, Row, Twin, WIDTH},
     product::{GROUP, Product},
 };
+
+pub(super) use self::blocks::Blocks;
+
+mod blocks;
 
 /// Rows in a panel.
 pub(super) const ROWS: usize = GROUP;
@@ -38,44 +42,6 @@ const fn nothing<const BLOCKS: usize>() -> [Beside<BLOCKS>; TILE] {
 /// Panels that a block of so many rows takes; the rows that it lacks are zero.
 const fn panels(rows: usize) -> usize {
     rows.div_ceil(ROWS)
-}
-
-/// Blocks in single precision, one behind the other.
-#[derive(Debug, Default)]
-pub(super) struct Blocks {
-    memory: Buffer,
-    /// Panels in a block.
-    panels: usize,
-}
-
-impl Blocks {
-    /// Addresses for so many blocks of so many rows.
-    pub(super) fn reserve(&mut self, rows: usize, blocks: usize) {
-        self.panels = panels(rows);
-        self.memory.reserve(blocks * self.panels * size_of::<Panel>() / size_of::<f64>());
-    }
-
-    /// The first blocks.
-    pub(super) fn first(&self, blocks: usize) -> Vec<&[Panel]> {
-        // There may be no memory yet.
-        if blocks == 0 {
-            return Vec::new();
-        }
-        let all: &[Panel] = bytemuck::cast_slice(self.memory.numbers());
-        all.chunks_exact(self.panels).take(blocks).collect()
-    }
-
-    /// One block.
-    pub(super) fn block_mut(&mut self, at: usize) -> &mut [Panel] {
-        self.split(at).1
-    }
-
-    /// The first blocks, and the one behind them.
-    pub(super) fn split(&mut self, at: usize) -> (Vec<&[Panel]>, &mut [Panel]) {
-        let all: &mut [Panel] = bytemuck::cast_slice_mut(self.memory.flat());
-        let (first, rest) = all.split_at_mut(at * self.panels);
-        (first.chunks_exact(self.panels).collect(), &mut rest[..self.panels])
-    }
 }
 
 /// Sixteen rows at most, two by two.
@@ -134,7 +100,8 @@ const TILE: usize = 8;
 /// Rows by which the work of the kernels below can be parted.
 pub(super) const STRETCH: usize = TILE * ROWS;
 
-/// Panels whose products are added up one by one, before their sum is added to others.
+/// Panels whose products are added up in single precision, panel by panel. With twice as many the bounds of eigenvalues
+/// are up to twice as wide.
 const RUN: usize = 2;
 
 /// The products of a block of a basis with the sixteen numbers of a register, number beside number: for two blocks
@@ -157,7 +124,7 @@ pub(super) struct Right<'a> {
 
 /// Products `Vᵢᵀ R` of every block of a basis, and `Vᵢᵀ v` if a block v is given, too.
 ///
-/// They are summed in single precision over the rows of a tile, and in double precision over the tiles, and are added
+/// They are summed in single precision over the rows of a few panels, and in double precision over those, and are added
 /// to what is there: R in the first place for R alone, else v in the first and R in the second.
 pub(super) struct PanelDots<'a, 'b> {
     pub basis: &'a [&'b [Panel]],
@@ -298,11 +265,11 @@ fn dots<L: Lanes, const BLOCKS: usize, const N: usize>(
     i: usize,
     sums: &mut Sums,
 ) {
-    let mut sum = [lanes.wide_splat(0.0); N];
     for (run, (block, tile)) in block.chunks(RUN).zip(tile.chunks(RUN)).enumerate() {
-        let mut parts = [[lanes.wide_splat(0.0); N]; BLOCKS];
+        let mut sum = [lanes.wide_splat(0.0); N];
         for (at, (panel, rows)) in block.iter().zip(tile).enumerate() {
             let next = next.get(run * RUN + at).unwrap_or(panel);
+            let mut parts = [[lanes.wide_splat(0.0); N]; BLOCKS];
             for ((two, next), rows) in panel.0.iter().zip(&next.0).zip(rows) {
                 lanes.fetch(&next[0]);
                 for ((at, row), part) in rows.iter().enumerate().zip(&mut parts) {
@@ -312,16 +279,16 @@ fn dots<L: Lanes, const BLOCKS: usize, const N: usize>(
                     }
                 }
             }
-        }
-        for part in parts {
-            for (sum, part) in sum.iter_mut().zip(part) {
-                *sum = lanes.wide_add(*sum, part);
+            for part in parts {
+                for (sum, part) in sum.iter_mut().zip(part) {
+                    *sum = lanes.wide_add(*sum, part);
+                }
             }
         }
-    }
-    for (sums, sum) in sums[i..i + N].iter_mut().zip(sum) {
-        for (to, sum) in sums.iter_mut().zip(lanes.apart(sum)) {
-            *to = lanes.row(lanes.add(lanes.load(to), sum));
+        for (sums, sum) in sums[i..i + N].iter_mut().zip(sum) {
+            for (to, sum) in sums.iter_mut().zip(lanes.apart(sum)) {
+                *to = lanes.row(lanes.add(lanes.load(to), sum));
+            }
         }
     }
 }
