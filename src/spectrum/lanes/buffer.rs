@@ -9,7 +9,7 @@ use memmap2::{MmapMut, MmapOptions};
 use super::Row;
 
 /// Bytes from which memory is taken in huge pages, where there are any: of small ones a solver touches so many that
-/// it spends a twentieth of its time on having them made and on finding them.
+/// it spends a few hundredths of its time on having them made and on finding them.
 const LARGE: usize = 1 << 16;
 
 /// Numbers in pages of their own: they start at a cache line, so that no row straddles two, and take no memory until
