@@ -30,7 +30,8 @@ impl Blocks {
 
     /// One block.
     pub(in crate::spectrum) fn block_mut(&mut self, at: usize) -> &mut [Panel] {
-        self.split(at).1
+        let all: &mut [Panel] = bytemuck::cast_slice_mut(self.memory.flat());
+        &mut all[at * self.panels..(at + 1) * self.panels]
     }
 
     /// The first blocks, and the one behind them.
